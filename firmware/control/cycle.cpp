@@ -1,0 +1,155 @@
+#include "firmware/control/cycle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/control/limits.h"
+#include "firmware/control/observe.h"
+#include "firmware/control/paper_law.h"
+
+namespace sidestep {
+namespace {
+
+/// The obstacles as they are now: the last set and its age; past its time it grows by what may have happened since.
+ObstacleView view_obstacles(const Settings& settings, const Latest<ObstacleSet>& obstacles, double now_s) {
+  if (!obstacles.message) return {};
+  const double age_s = obstacles.age_s(now_s);
+  const bool fresh = obstacles.fresh(now_s, settings.ages.obstacles_s);
+  return {obstacles.message, age_s, fresh ? 0.0 : age_s * settings.obstacle_speed_bound_mps};
+}
+
+/// The target moved forward to the present by its own velocities.
+Target present(const Latest<Target>& latest, double now_s) {
+  Target target = *latest.message;
+  const double age_s = latest.age_s(now_s);
+  target.position_m += target.velocity_mps * age_s;
+  const Vector3 turn = target.angular_velocity_radps * age_s;
+  if (target.tracks_orientation && turn.squaredNorm() > 0.0)
+    target.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
+  return target;
+}
+
+/// A new stream of commands starts from the measured arm, so that nothing jumps; a running one goes on from its last.
+void start_from(const ArmState& arm, State& next) {
+  next.position_rad = arm.position_rad;
+  next.velocity_radps = arm.velocity_radps;
+  next.planning = false;
+}
+
+/// The joint velocity that the law wishes for; at rest unless tracking.
+Wish ask_law(const Model& model, const Situation& situation, const State& state) {
+  if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
+  const Vector3* planned = state.planning ? &state.planned_mps : nullptr;
+  return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
+}
+
+/// Where the velocity leads from the last commanded position. Should the arm have fallen too far behind or been moved,
+/// the command closes in on it with what the velocity limit leaves.
+JointVector lead(const Model& model, const State& state, const ArmState& arm, const JointVector& velocity_radps) {
+  const double period_s = model.settings.period_s();
+  const JointLimits& limits = model.arm.limits;
+  JointVector position_rad = state.position_rad + velocity_radps * period_s;
+  for (int i = 0; i < model.arm.joints; ++i) {
+    const double error_rad = arm.position_rad[i] - state.position_rad[i];
+    if (std::abs(error_rad) > model.settings.following_error_rad) {
+      const double room_rad = std::max(0.0, limits.velocity_radps[i] - std::abs(velocity_radps[i])) * period_s;
+      position_rad[i] += std::clamp(error_rad, -room_rad, room_rad);
+    }
+    // Rounding only; an arm that is outside its limits is led back, not pulled.
+    const bool inside = state.position_rad[i] >= limits.lower_rad[i] && state.position_rad[i] <= limits.upper_rad[i];
+    if (inside) position_rad[i] = std::clamp(position_rad[i], limits.lower_rad[i], limits.upper_rad[i]);
+  }
+  return position_rad;
+}
+
+/// The last word before a command leaves: within all limits, or braking.
+Command gate(const Model& model, const State& state, const ArmState& arm, JointVector velocity_radps, int& limiting) {
+  const double period_s = model.settings.period_s();
+  const JointLimits& limits = model.arm.limits;
+  const Mode mode = state.supervision.mode;
+  if (mode == Mode::kHold || mode == Mode::kTrack) {
+    const VelocityRange range =
+        velocity_range(limits, state.position_rad.cwiseMin(arm.position_rad),
+                       state.position_rad.cwiseMax(arm.position_rad), state.velocity_radps, period_s);
+    limiting |= apply_limits(limits, range, state.velocity_radps, period_s, velocity_radps);
+  } else {
+    velocity_radps = brake(limits, state.velocity_radps, period_s);
+  }
+  return {lead(model, state, arm, velocity_radps), velocity_radps};
+}
+
+/// A stream of commands runs in every mode that moves the arm, and after a fault until the arm is at rest.
+bool goes_on(const State& state, const JointVector& velocity_radps) {
+  if (state.supervision.mode == Mode::kWait) return false;
+  if (state.supervision.mode == Mode::kFault) return state.commanding && !velocity_radps.isZero(0.0);
+  return true;
+}
+
+/// A wish that is not finite is a defect somewhere: stop, and start over after a while of consistent arm state.
+void distrust(double now_s, State& next) {
+  next.supervision = {Mode::kFault, Fault::kNotFinite, "fault: a result was not finite"};
+  next.consistent_since_s = now_s;
+}
+
+void remember(const Command& command, const Wish& wish, State& next) {
+  next.position_rad = command.position_rad;
+  next.velocity_radps = command.velocity_radps;
+  next.planning = next.supervision.mode == Mode::kTrack;
+  next.planned_mps = wish.tool_velocity_mps;
+  next.commanding = goes_on(next, command.velocity_radps);
+}
+
+void report_tool(const Posture& posture, const ArmState& arm, Report& report) {
+  report.tool_position_m = posture.tool_position;
+  report.tool_velocity_mps = tool_jacobian(posture, 3) * arm.velocity_radps;
+}
+
+void report_clearance(const Clearance& clearance, const Latest<ObstacleSet>& obstacles, Report& report) {
+  if (!obstacles.message) return;
+  report.clearance_m = clearance.nearest.distance_m;
+  report.nearest_shape = clearance.nearest.shape;
+  if (clearance.nearest.obstacle >= 0)
+    report.nearest_obstacle = obstacles.message->obstacles[clearance.nearest.obstacle].id;
+}
+
+}  // namespace
+
+Result step(const Model& model, const State& state, const Inputs& inputs, double now_s) {
+  Result result;
+  Report& report = result.report;
+  State& next = result.next = state;
+
+  const Facts facts = observe(model, inputs, now_s, next);
+  next.supervision = next_mode(state.supervision, facts);
+  if (facts.arm_known) {
+    const ArmState& arm = *inputs.arm.message;
+    if (!state.commanding || facts.arm_broke) start_from(arm, next);
+
+    const Posture posture = forward(model.arm, arm.position_rad);
+    const ObstacleView obstacles = view_obstacles(model.settings, inputs.obstacles, now_s);
+    const Clearance clearance = measure_clearance(model.arm, posture, obstacles, model.settings.near_range_m);
+    const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
+
+    const Wish wish = ask_law(model, {model.arm, posture, arm.velocity_radps, target, obstacles, clearance}, next);
+    if (!wish.velocity_radps.allFinite()) distrust(now_s, next);
+
+    result.command = gate(model, next, arm, wish.velocity_radps, report.limiting);
+    remember(result.command, wish, next);
+
+    report_tool(posture, arm, report);
+    report_clearance(clearance, inputs.obstacles, report);
+    if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();
+    report.beta = wish.beta;
+    report.damping = wish.damping;
+    if (wish.task_speed_limited) report.limiting |= kLimitingTaskSpeed;
+  }
+  if (inputs.skipped_cycles > 0) report.limiting |= kLimitingLate;
+  report.mode = next.supervision.mode;
+  report.fault = next.supervision.fault;
+  report.message = next.supervision.message;
+  result.commanding = next.commanding;
+  return result;
+}
+
+}  // namespace sidestep

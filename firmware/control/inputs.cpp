@@ -1,0 +1,49 @@
+#include "firmware/control/inputs.h"
+
+#include <cmath>
+
+namespace sidestep {
+namespace {
+
+// Beyond anything an arm or its surroundings do; larger numbers are garbage, not measurements.
+constexpr double kLargestLength_m = 1000.0;
+constexpr double kLargestSpeed_mps = 1000.0;
+constexpr double kLargestRate_radps = 1000.0;
+constexpr double kLargestJoint_rad = 1000.0;
+
+template <typename Vector>
+bool within(const Vector& vector, double bound) {
+  return vector.allFinite() && vector.cwiseAbs().maxCoeff() <= bound;
+}
+
+}  // namespace
+
+bool plausible(const ArmState& state, int joints) {
+  return state.position_rad.size() == joints && state.velocity_radps.size() == joints &&
+         within(state.position_rad, kLargestJoint_rad) && within(state.velocity_radps, kLargestRate_radps);
+}
+
+bool plausible(const Target& target) {
+  const bool turned = !target.tracks_orientation || (std::abs(target.orientation.norm() - 1.0) < 1e-3 &&
+                                                     within(target.angular_velocity_radps, kLargestRate_radps));
+  return turned && within(target.position_m, kLargestLength_m) && within(target.velocity_mps, kLargestSpeed_mps);
+}
+
+bool plausible(const Obstacle& obstacle) {
+  const Capsule& capsule = obstacle.capsule;
+  return within(capsule.start, kLargestLength_m) && within(capsule.end, kLargestLength_m) && capsule.radius_m >= 0.0 &&
+         capsule.radius_m <= kLargestLength_m && within(obstacle.velocity_mps, kLargestSpeed_mps) &&
+         within(obstacle.angular_velocity_radps, kLargestRate_radps);
+}
+
+bool Order::accept(int64_t utime, double now_s, double restart_s) {
+  const bool silent = now_s - accepted_s_ > restart_s || now_s < accepted_s_;
+  const bool went_back = static_cast<double>(utime_) - static_cast<double>(utime) > restart_s * 1e6;
+  if (any_ && utime <= utime_ && !silent && !went_back) return false;
+  any_ = true;
+  utime_ = utime;
+  accepted_s_ = now_s;
+  return true;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "firmware/control/messages.h"
+#include "firmware/control/settings.h"
+
+namespace sidestep {
+
+/// Whether the values of a message can be true: finite, within what any arm or room can be, unit quaternions.
+bool plausible(const ArmState& state, int joints);
+bool plausible(const Target& target);
+bool plausible(const Obstacle& obstacle);
+
+/// The newest valid message of one channel, when it was received and how many there have been.
+template <typename Message>
+struct Latest {
+  const Message* message = nullptr;  ///< null: none yet
+  double received_s = 0.0;
+  int64_t count = 0;
+
+  double age_s(double now_s) const { return now_s - received_s; }
+  bool fresh(double now_s, double limit_s) const { return message && age_s(now_s) >= 0.0 && age_s(now_s) <= limit_s; }
+};
+
+/// Decides by its utime whether a message is newer than all before it on its channel.
+class Order {
+ public:
+  /// Accepts a newer utime. An older or repeated one is dropped unless its sender has evidently started anew: it is
+  /// older by more than `restart_s`, or nothing was accepted for `restart_s` (local receipt times, s).
+  bool accept(int64_t utime, double now_s, double restart_s);
+
+ private:
+  bool any_ = false;
+  int64_t utime_ = 0;
+  double accepted_s_ = 0.0;
+};
+
+}  // namespace sidestep

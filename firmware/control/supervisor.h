@@ -1,0 +1,37 @@
+#pragma once
+
+#include "firmware/control/messages.h"
+
+namespace sidestep {
+
+/// What the supervisor knows in one cycle.
+struct Facts {
+  bool arm_known = false;        ///< an arm state was ever received
+  bool arm_fresh = false;        ///< young enough to act on
+  bool arm_lost = false;         ///< older than what a short gap may be
+  bool arm_consistent = false;   ///< consistent for as long as it has to be
+  bool arm_broke = false;        ///< this cycle's arm state contradicts the one before
+  bool obstacles_known = false;  ///< a set was received, or none is needed
+  bool obstacles_fresh = false;
+  bool target_known = false;
+  bool target_fresh = false;
+  bool late = false;  ///< too many cycles in a row were skipped
+  bool stop = false;  ///< somebody wants the controller to end
+};
+
+/// Mode, what led to it, and both in words.
+struct Supervision {
+  Mode mode = Mode::kWait;
+  Fault fault = Fault::kNone;
+  const char* message = "starting";
+};
+
+/// The modes and their transitions:
+///
+///   WAIT  -> HOLD   the arm state is consistent and the obstacles are known
+///   HOLD <-> TRACK  there is a fresh target; HOLD slows to rest and goes on avoiding
+///   any   -> BRAKE  arm state or obstacles too old, late, or asked to stop: to rest as fast as the joints can; and
+///   back any   -> FAULT  arm state lost or contradictory, or a wish that is not finite; from there as from WAIT
+Supervision next_mode(const Supervision& last, const Facts& facts);
+
+}  // namespace sidestep

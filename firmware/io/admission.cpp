@@ -1,0 +1,130 @@
+#include "firmware/io/admission.h"
+
+#include <cstring>
+#include <sidestep/joint_state_t.hpp>
+#include <sidestep/obstacles_t.hpp>
+#include <sidestep/target_t.hpp>
+
+namespace sidestep {
+namespace {
+
+constexpr size_t kHeaderBytes = 16;  // fingerprint and utime
+constexpr size_t kCountBytes = 4;
+constexpr size_t kObstacleBytes = 4 + 1 + 16 * 8;
+
+uint64_t big_endian(const uint8_t* bytes, int count) {
+  uint64_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | bytes[i];
+  return value;
+}
+
+/// The count that follows the header, or -1 when the bytes are too few to have one.
+int64_t count_of(const void* bytes, size_t size) {
+  if (size < kHeaderBytes + kCountBytes) return -1;
+  return static_cast<int32_t>(big_endian(static_cast<const uint8_t*>(bytes) + kHeaderBytes, kCountBytes));
+}
+
+template <typename Message>
+bool has_fingerprint(const void* bytes, size_t size) {
+  return size >= 8 && big_endian(static_cast<const uint8_t*>(bytes), 8) == static_cast<uint64_t>(Message::getHash());
+}
+
+Vector3 vector(const double* xyz) {
+  return Vector3(xyz[0], xyz[1], xyz[2]);
+}
+Quaternion quaternion(const double* wxyz) {
+  return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+}
+
+/// The capsule that encloses the obstacle, in the base frame; its radius is NaN when the shape makes no sense.
+Capsule enclose(const obstacle_t& obstacle) {
+  const Vector3 centre = vector(obstacle.position), size = vector(obstacle.size);
+  if (obstacle.shape == obstacle_t::SPHERE) return {centre, centre, size[0]};
+  const Capsule nonsense{centre, centre, std::nan("")};
+  const Quaternion turn = quaternion(obstacle.quaternion);
+  if (!size.allFinite() || size.minCoeff() < 0.0 || !(std::abs(turn.norm() - 1.0) < 1e-3)) return nonsense;
+  Capsule local;
+  if (obstacle.shape == obstacle_t::CAPSULE)
+    local = {Vector3(0, 0, -0.5 * size[1]), Vector3(0, 0, 0.5 * size[1]), size[0]};
+  else if (obstacle.shape == obstacle_t::BOX)
+    local = capsule_around_box(size);
+  else
+    return nonsense;
+  const Matrix3 rotation = turn.normalized().toRotationMatrix();
+  return {centre + rotation * local.start, centre + rotation * local.end, local.radius_m};
+}
+
+}  // namespace
+
+/// Decoded messages whose vectors keep their capacity from one message to the next.
+struct Admission::Scratch {
+  joint_state_t arm;
+  target_t target;
+  obstacles_t obstacles;
+};
+
+Admission::Admission(int joints, const Ages& ages)
+    : joints_(joints), ages_(ages), scratch_(std::make_unique<Scratch>()) {
+  scratch_->obstacles.obstacles.reserve(kMaxObstacles);
+}
+
+Admission::~Admission() = default;
+
+bool Admission::reject(const char* reason) {
+  ++rejected_;
+  reason_ = reason;
+  return false;
+}
+
+bool Admission::admit(const void* bytes, size_t size, double now_s, ArmState& value) {
+  if (!has_fingerprint<joint_state_t>(bytes, size)) return reject("arm state of another type");
+  const int64_t count = count_of(bytes, size);
+  if (count != joints_) return reject("arm state with a wrong number of joints");
+  if (size != kHeaderBytes + kCountBytes + 16 * static_cast<size_t>(count)) return reject("arm state of wrong size");
+  joint_state_t& message = scratch_->arm;
+  if (message.decode(bytes, 0, static_cast<int>(size)) < 0) return reject("arm state that does not decode");
+  value.utime = message.utime;
+  value.position_rad = Eigen::Map<const Eigen::VectorXd>(message.joint_position.data(), joints_);
+  value.velocity_radps = Eigen::Map<const Eigen::VectorXd>(message.joint_velocity.data(), joints_);
+  if (!plausible(value, joints_)) return reject("arm state with impossible values");
+  return arm_order_.accept(value.utime, now_s, ages_.arm_state_lost_s);
+}
+
+bool Admission::admit(const void* bytes, size_t size, double now_s, Target& value) {
+  if (!has_fingerprint<target_t>(bytes, size)) return reject("target of another type");
+  target_t& message = scratch_->target;
+  if (size != 8 + static_cast<size_t>(message._getEncodedSizeNoHash())) return reject("target of wrong size");
+  if (message.decode(bytes, 0, static_cast<int>(size)) < 0) return reject("target that does not decode");
+  value.utime = message.utime;
+  value.position_m = vector(message.position);
+  value.velocity_mps = vector(message.velocity);
+  value.tracks_orientation = message.tracks_orientation != 0;
+  value.orientation = quaternion(message.quaternion);
+  value.angular_velocity_radps = vector(message.angular_velocity);
+  if (!plausible(value)) return reject("target with impossible values");
+  value.orientation = value.tracks_orientation ? value.orientation.normalized() : Quaternion::Identity();
+  if (!value.tracks_orientation) value.angular_velocity_radps.setZero();
+  return target_order_.accept(value.utime, now_s, ages_.target_s);
+}
+
+bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet& value) {
+  if (!has_fingerprint<obstacles_t>(bytes, size)) return reject("obstacles of another type");
+  const int64_t count = count_of(bytes, size);
+  if (count < 0 || count > kMaxObstacles) return reject("obstacles with an impossible count");
+  if (size != kHeaderBytes + kCountBytes + kObstacleBytes * static_cast<size_t>(count))
+    return reject("obstacles of wrong size");
+  obstacles_t& message = scratch_->obstacles;
+  if (message.decode(bytes, 0, static_cast<int>(size)) < 0) return reject("obstacles that do not decode");
+  value.count = static_cast<int>(count);
+  for (int i = 0; i < value.count; ++i) {
+    const obstacle_t& from = message.obstacles[static_cast<size_t>(i)];
+    Obstacle& to = value.obstacles[static_cast<size_t>(i)];
+    const bool turns = from.shape != obstacle_t::SPHERE;
+    to = {from.id, enclose(from), vector(from.velocity),
+          turns ? vector(from.angular_velocity) : Vector3(Vector3::Zero())};
+    if (!plausible(to)) return reject("obstacles with impossible values");
+  }
+  return obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,139 @@
+#include "firmware/io/config.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "firmware/io/config_section.h"
+
+namespace sidestep {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first existing `relative` in `start` or a folder above it; empty when there is none.
+fs::path find_upwards(fs::path start, const fs::path& relative) {
+  for (start = fs::absolute(start);; start = start.parent_path()) {
+    if (fs::exists(start / relative)) return start / relative;
+    if (start == start.root_path()) return {};
+  }
+}
+
+std::string find_urdf(const std::string& config_file, const std::string& urdf) {
+  if (!config_file.empty())
+    if (const fs::path found = find_upwards(fs::absolute(config_file).parent_path(), urdf); !found.empty())
+      return found.lexically_normal().string();
+  const fs::path found = find_upwards(fs::current_path(), urdf);
+  return found.empty() ? urdf : found.lexically_normal().string();
+}
+
+void read_limits(Section limits, Arm& arm) {
+  limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps);
+  limits.per_joint("acceleration_radps2", arm.joints, arm.limits.acceleration_radps2);
+  limits.per_joint("lower_rad", arm.joints, arm.limits.lower_rad);
+  limits.per_joint("upper_rad", arm.joints, arm.limits.upper_rad);
+  limits.finish();
+  check_limits(arm);
+}
+
+void read_paper(Section paper, PaperGains& gains) {
+  paper.not_negative("k_pos_per_s2", gains.k_pos_per_s2);
+  paper.not_negative("k_vel_per_s", gains.k_vel_per_s);
+  paper.not_negative("k_rpos_m2ps2", gains.k_rpos_m2ps2);
+  paper.not_negative("k_rvel_m2ps2", gains.k_rvel_m2ps2);
+  paper.positive("rho_0_m", gains.rho_0_m);
+  paper.positive("rho_v_m", gains.rho_v_m);
+  paper.positive("rho_min_m", gains.rho_min_m);
+  paper.positive("v_max_mps", gains.v_max_mps);
+  paper.not_negative("lambda_0", gains.lambda_0);
+  paper.positive("sigma_0", gains.sigma_0);
+  paper.positive("lambda_n", gains.lambda_n);
+  paper.not_negative("x_m_mps", gains.x_m_mps);
+  paper.positive("d_m_m", gains.d_m_m);
+  paper.positive("d_1_m", gains.d_1_m);
+  paper.not_negative("d_2_m", gains.d_2_m);
+  paper.not_negative("k_ori_per_s", gains.k_ori_per_s);
+  std::string tool_velocity = "measured";
+  paper.choice("tool_velocity", tool_velocity, {"measured", "planned"});
+  gains.tool_velocity = tool_velocity == "planned" ? ToolVelocity::kPlanned : ToolVelocity::kMeasured;
+  if (gains.d_2_m >= gains.d_1_m) paper.fail("d_2_m", "must be below d_1_m");
+  paper.finish();
+}
+
+void read_ages(Section section, Ages& ages) {
+  section.positive("target_s", ages.target_s);
+  section.positive("obstacles_s", ages.obstacles_s);
+  section.positive("arm_state_s", ages.arm_state_s);
+  section.positive("arm_state_lost_s", ages.arm_state_lost_s);
+  section.not_negative("consistent_s", ages.consistent_s);
+  if (ages.arm_state_lost_s < ages.arm_state_s) section.fail("arm_state_lost_s", "must not be below arm_state_s");
+  section.finish();
+}
+
+void read_control(Section control, Settings& settings) {
+  control.number("rate_hz", settings.rate_hz, 10.0, 2000.0);
+  control.positive("following_error_rad", settings.following_error_rad);
+  control.finish();
+}
+
+void read_obstacles(Section obstacles, Settings& settings) {
+  obstacles.flag("wait_for_first", settings.wait_for_obstacles);
+  obstacles.not_negative("speed_bound_mps", settings.obstacle_speed_bound_mps);
+  obstacles.finish();
+}
+
+void read_channels(Section section, Channels& channels) {
+  section.text("target", channels.target);
+  section.text("obstacles", channels.obstacles);
+  section.text("arm_state", channels.arm_state);
+  section.text("arm_command", channels.arm_command);
+  section.text("controller_status", channels.controller_status);
+  section.finish();
+}
+
+/// Switches of parts that experiments turn off; they are the sidestep law's own.
+void read_switch(Section section, bool& enabled) {
+  section.flag("enabled", enabled);
+  section.finish();
+}
+
+Arm read_robot(Section robot, const std::string& config_file, const Overrides& overrides) {
+  std::string urdf, base, tip;
+  robot.text("urdf", urdf);
+  robot.text("base", base);
+  robot.text("tip", tip);
+  robot.finish();
+  if (!overrides.urdf.empty()) urdf = overrides.urdf;
+  if (!overrides.base.empty()) base = overrides.base;
+  if (!overrides.tip.empty()) tip = overrides.tip;
+  if (urdf.empty()) robot.fail("urdf", "is missing (or give --urdf)");
+  if (base.empty()) robot.fail("base", "is missing (or give --base)");
+  if (tip.empty()) robot.fail("tip", "is missing (or give --tip)");
+  return load_arm(overrides.urdf.empty() ? find_urdf(config_file, urdf) : urdf, base, tip);
+}
+
+}  // namespace
+
+Config load_config(const std::string& file, const Overrides& overrides) {
+  Section root = file.empty() ? Section::empty() : Section::of_file(file);
+  Config config;
+  Settings& settings = config.model.settings;
+
+  std::string law = "sidestep";
+  root.choice("law", law, {"sidestep", "paper"});
+  if (!overrides.law.empty()) law = overrides.law;
+  settings.law = law == "paper" ? Law::kPaper : Law::kSidestep;
+
+  config.model.arm = read_robot(root.section("robot"), file, overrides);
+  read_limits(root.section("limits"), config.model.arm);
+  read_control(root.section("control"), settings);
+  read_paper(root.section("paper"), settings.paper);
+  read_ages(root.section("ages"), settings.ages);
+  read_obstacles(root.section("obstacles"), settings);
+  read_channels(root.section("channels"), config.channels);
+  read_switch(root.section("shield"), settings.shield_enabled);
+  read_switch(root.section("foresight"), settings.foresight_enabled);
+  root.finish();
+  return config;
+}
+
+}  // namespace sidestep

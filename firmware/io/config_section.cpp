@@ -1,0 +1,113 @@
+#include "firmware/io/config_section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace sidestep {
+
+Section::Section(std::string file, std::string path, YAML::Node node)
+    : file_(std::move(file)), path_(std::move(path)), node_(std::move(node)) {
+  if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
+  if (!node_.IsMap()) {
+    const std::string what = path_.empty() ? "the file" : fmt::format("'{}'", path_.substr(0, path_.size() - 1));
+    throw std::runtime_error(fmt::format("{}: {} must be a mapping of keys to values", file_, what));
+  }
+}
+
+Section Section::of_file(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  try {
+    return Section(file, "", YAML::Load(text.str()));
+  } catch (const YAML::Exception& error) {
+    throw std::runtime_error(fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, error.msg));
+  }
+}
+
+void Section::fail(const std::string& key, const std::string& what) const {
+  throw std::runtime_error(fmt::format("{}: {}{}: {}", file_, path_, key, what));
+}
+
+YAML::Node Section::take(const std::string& key) {
+  known_.insert(key);
+  const YAML::Node& node = node_;  // the non-const operator would insert the key
+  return node[key] ? node[key] : YAML::Node();
+}
+
+Section Section::section(const std::string& key) {
+  return Section(file_, path_ + key + ".", take(key));
+}
+
+double Section::to_number(const std::string& key, const YAML::Node& node) const {
+  double value = 0.0;
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || std::isnan(value))
+    fail(key, "must be a number");
+  return value;
+}
+
+void Section::number(const std::string& key, double& value, double lowest, double highest) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  const double number = to_number(key, node);
+  if (!(number >= lowest && number <= highest))
+    fail(key, fmt::format("is {}, must be between {} and {}", number, lowest, highest));
+  value = number;
+}
+
+void Section::positive(const std::string& key, double& value) {
+  number(key, value, std::numeric_limits<double>::min(), std::numeric_limits<double>::max());
+}
+
+void Section::not_negative(const std::string& key, double& value) {
+  number(key, value, 0.0, std::numeric_limits<double>::max());
+}
+
+void Section::flag(const std::string& key, bool& value) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) fail(key, "must be true or false");
+}
+
+void Section::text(const std::string& key, std::string& value) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (!node.IsScalar() || node.Scalar().empty()) fail(key, "must be a text");
+  value = node.Scalar();
+}
+
+void Section::choice(const std::string& key, std::string& value, const std::vector<std::string>& choices) {
+  text(key, value);
+  for (const std::string& choice : choices)
+    if (value == choice) return;
+  fail(key, fmt::format("is '{}', must be one of: {}", value, fmt::join(choices, ", ")));
+}
+
+void Section::per_joint(const std::string& key, int joints, JointVector& value) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (node.IsScalar()) {
+    value = JointVector::Constant(joints, to_number(key, node));
+    return;
+  }
+  if (!node.IsSequence() || node.size() != static_cast<size_t>(joints))
+    fail(key, fmt::format("must be a list of {} numbers, one for each joint", joints));
+  value.resize(joints);
+  for (int i = 0; i < joints; ++i) value[i] = to_number(key, node[i]);
+}
+
+void Section::finish() const {
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (known_.count(key) == 0) fail(key, "there is no such key");
+    if (!seen.insert(key).second) fail(key, "stands twice");
+  }
+}
+
+}  // namespace sidestep

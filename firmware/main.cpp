@@ -1,0 +1,94 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+
+#include "firmware/io/config.h"
+#include "firmware/io/loop.h"
+
+namespace {
+
+std::atomic<bool> stop{false};
+
+void ask_to_stop(int) {
+  stop = true;
+}
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+struct Arguments {
+  std::string config;
+  sidestep::Overrides overrides;
+  std::string lcm_url;
+  bool lockstep = false;
+};
+
+void describe(CLI::App& app, Arguments& arguments) {
+  app.add_option("--config", arguments.config, "YAML file of the robot, for example firmware/config/lwa3.yaml");
+  app.add_option("--law", arguments.overrides.law, "the law, over the configuration's")
+      ->check(CLI::IsMember({"sidestep", "paper"}));
+  app.add_flag("--lockstep", arguments.lockstep, "one cycle for every arm state, on the arm's clock");
+  app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM's own)");
+  app.add_option("--urdf", arguments.overrides.urdf, "robot description, over the configuration's");
+  app.add_option("--base", arguments.overrides.base, "base link, over the configuration's");
+  app.add_option("--tip", arguments.overrides.tip, "tip link, the tool, over the configuration's");
+  app.footer(
+      "Stops on Ctrl-C or SIGTERM: brakes the arm to rest, then exits with 0.\n"
+      "Exit codes: 0 stopped as asked, 1 failed while running, 2 wrong arguments, configuration or URDF.");
+}
+
+int run(const Arguments& arguments) {
+  using namespace sidestep;
+  Config config;
+  try {
+    config = load_config(arguments.config, arguments.overrides);
+  } catch (const std::exception& error) {
+    std::cerr << "controller: " << error.what() << "\n";
+    return 2;
+  }
+  const Settings& settings = config.model.settings;
+  spdlog::info("{} joints, {} link shapes, {:g} Hz{}, law {}", config.model.arm.joints, config.model.arm.shapes.size(),
+               settings.rate_hz, arguments.lockstep ? " in lockstep" : "",
+               settings.law == Law::kPaper ? "paper" : "sidestep");
+  const LoopSummary summary = arguments.lockstep ? run_lockstep(config, arguments.lcm_url, stop)
+                                                 : run_realtime(config, arguments.lcm_url, stop);
+  spdlog::info(
+      "{} cycles, {} skipped, CPU time of a cycle {:.1f} us (worst {:.1f} us), worst wake-up {:.0f} us late, "
+      "{} messages rejected",
+      summary.cycles, summary.skipped_cycles, summary.cpu_mean_s * 1e6, summary.cpu_worst_s * 1e6,
+      summary.wake_latency_worst_s * 1e6, summary.rejected_messages);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("controller"));
+  spdlog::set_pattern("%n: %v");
+  CLI::App app{
+      "Sidestep controller: steers a redundant arm to a moving target while the whole arm keeps clear of "
+      "moving obstacles."};
+  Arguments arguments;
+  describe(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  catch_signals();
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "controller: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,216 @@
+#include "firmware/model/arm.h"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <cmath>
+#include <fstream>
+#include <kdl/tree.hpp>
+#include <kdl_parser/kdl_parser.hpp>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace sidestep {
+namespace {
+
+template <typename... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
+  throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
+}
+
+Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    result.translation()[row] = frame.p[row];
+    for (int column = 0; column < 3; ++column) result.linear()(row, column) = frame.M(row, column);
+  }
+  return result;
+}
+
+Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.translation() = Vector3(pose.position.x, pose.position.y, pose.position.z);
+  result.linear() =
+      Quaternion(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z).normalized().toRotationMatrix();
+  return result;
+}
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) fail("{}: cannot be read", file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  // The parser would print several lines of its own before it gives up.
+  console_bridge::noOutputHandler();
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
+  console_bridge::restorePreviousOutputHandler();
+  if (!model || !model->getRoot()) fail("{}: not a valid URDF", file);
+  return model;
+}
+
+/// Names of the links from base to tip, both included.
+std::vector<std::string> path(const std::string& file, const urdf::ModelInterface& model, const std::string& base,
+                              const std::string& tip) {
+  for (const std::string& name : {base, tip})
+    if (!model.getLink(name)) fail("{}: there is no link '{}'", file, name);
+  std::vector<std::string> names;
+  for (auto link = model.getLink(tip); link; link = link->getParent()) {
+    names.insert(names.begin(), link->name);
+    if (link->name == base) return names;
+    if (names.size() > model.links_.size()) break;
+  }
+  fail("{}: link '{}' is not above link '{}'", file, base, tip);
+}
+
+void check_joint(const std::string& file, const urdf::Joint& joint) {
+  const bool turns = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
+  if (!turns && joint.type != urdf::Joint::FIXED)
+    fail("{}: joint '{}' is neither revolute, continuous nor fixed", file, joint.name);
+  const auto& origin = joint.parent_to_joint_origin_transform;
+  if (!to_eigen(origin).matrix().allFinite()) fail("{}: joint '{}': its origin is not finite", file, joint.name);
+  if (!turns) return;
+  const double norm = std::hypot(joint.axis.x, joint.axis.y, joint.axis.z);
+  if (!(std::isfinite(norm) && norm > 1e-6)) fail("{}: joint '{}': its axis has no direction", file, joint.name);
+  if (!joint.limits && joint.type == urdf::Joint::REVOLUTE) fail("{}: joint '{}' has no <limit>", file, joint.name);
+}
+
+/// The capsule around one collision shape, in the frame of the shape.
+Capsule enclose(const std::string& file, const urdf::Link& link, const urdf::Geometry& geometry) {
+  const auto positive = [&](double length, const char* what) {
+    if (!(std::isfinite(length) && length > 0.0))
+      fail("{}: link '{}': a collision {} must be finite and positive", file, link.name, what);
+  };
+  if (geometry.type == urdf::Geometry::SPHERE) {
+    const auto& sphere = static_cast<const urdf::Sphere&>(geometry);
+    positive(sphere.radius, "radius");
+    return {Vector3::Zero(), Vector3::Zero(), sphere.radius};
+  }
+  if (geometry.type == urdf::Geometry::CYLINDER) {
+    const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+    positive(cylinder.radius, "radius");
+    positive(cylinder.length, "length");
+    const Vector3 half(0, 0, 0.5 * cylinder.length);
+    return {-half, half, cylinder.radius};
+  }
+  if (geometry.type == urdf::Geometry::BOX) {
+    const auto& box = static_cast<const urdf::Box&>(geometry);
+    for (double edge : {box.dim.x, box.dim.y, box.dim.z}) positive(edge, "box edge");
+    return capsule_around_box(Vector3(box.dim.x, box.dim.y, box.dim.z));
+  }
+  fail("{}: link '{}': collision meshes are not supported yet; use spheres, cylinders and boxes", file, link.name);
+}
+
+/// Walks from one link of the chain through everything that is fixed to it and collects the shapes.
+class ShapeCollector {
+ public:
+  ShapeCollector(const std::string& file, const std::vector<std::string>& chain_links, std::vector<LinkShape>& shapes)
+      : file_(file), chain_links_(chain_links.begin(), chain_links.end()), shapes_(shapes) {}
+
+  void collect(const urdf::Link& link, int body, const Eigen::Isometry3d& body_from_link) {
+    for (const auto& collision : link.collision_array) {
+      if (!collision || !collision->geometry) fail("{}: link '{}': a collision has no geometry", file_, link.name);
+      Capsule capsule = enclose(file_, link, *collision->geometry);
+      const Eigen::Isometry3d body_from_shape = body_from_link * to_eigen(collision->origin);
+      if (!body_from_shape.matrix().allFinite())
+        fail("{}: link '{}': a collision origin is not finite", file_, link.name);
+      capsule.start = body_from_shape * capsule.start;
+      capsule.end = body_from_shape * capsule.end;
+      add({link.name, body, capsule});
+    }
+    for (const auto& child : link.child_links)
+      if (chain_links_.count(child->name) == 0)
+        collect(*child, body, body_from_link * to_eigen(child->parent_joint->parent_to_joint_origin_transform));
+  }
+
+ private:
+  /// A shape inside another of its body adds nothing: a sphere that rounds the end of a cylinder, for one.
+  void add(const LinkShape& shape) {
+    for (const LinkShape& other : shapes_)
+      if (other.body == shape.body && contains(other.capsule_body, shape.capsule_body)) return;
+    for (size_t i = shapes_.size(); i-- > 0;)
+      if (shapes_[i].body == shape.body && contains(shape.capsule_body, shapes_[i].capsule_body))
+        shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
+    shapes_.push_back(shape);
+  }
+
+  const std::string& file_;
+  std::set<std::string> chain_links_;
+  std::vector<LinkShape>& shapes_;
+};
+
+void append_limits(JointLimits& limits, const urdf::Joint& joint) {
+  const auto append = [](JointVector& vector, double value) {
+    vector.conservativeResize(vector.size() + 1);
+    vector[vector.size() - 1] = value;
+  };
+  const bool endless = joint.type == urdf::Joint::CONTINUOUS;
+  const double infinity = std::numeric_limits<double>::infinity();
+  append(limits.lower_rad, endless ? -infinity : joint.limits->lower);
+  append(limits.upper_rad, endless ? infinity : joint.limits->upper);
+  append(limits.velocity_radps, joint.limits ? joint.limits->velocity : std::nan(""));
+  append(limits.acceleration_radps2, kDefaultAcceleration_radps2);
+}
+
+}  // namespace
+
+Arm load_arm(const std::string& urdf_file, const std::string& base, const std::string& tip) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf_file);
+  const std::vector<std::string> links = path(urdf_file, *model, base, tip);
+  for (size_t i = 1; i < links.size(); ++i) check_joint(urdf_file, *model->getLink(links[i])->parent_joint);
+
+  Arm arm;
+  KDL::Tree tree;
+  if (!kdl_parser::treeFromUrdfModel(*model, tree) || !tree.getChain(base, tip, arm.chain))
+    fail("{}: no kinematic chain from '{}' to '{}'", urdf_file, base, tip);
+
+  ShapeCollector shapes(urdf_file, links, arm.shapes);
+  Eigen::Isometry3d body_from_link = Eigen::Isometry3d::Identity();  // of the link before the next segment
+  shapes.collect(*model->getLink(base), 0, body_from_link);
+  for (unsigned i = 0; i < arm.chain.getNrOfSegments(); ++i) {
+    const KDL::Segment& segment = arm.chain.getSegment(i);
+    const urdf::Link& link = *model->getLink(links[i + 1]);
+    body_from_link = body_from_link * to_eigen(segment.pose(0.0));
+    if (segment.getJoint().getType() != KDL::Joint::None) {
+      if (arm.joints == kMaxJoints) fail("{}: more than {} joints from '{}' to '{}'", urdf_file, kMaxJoints, base, tip);
+      // Turn the frame so that its z is the joint's axis; the rest of the chain is then seen from the turned frame.
+      const urdf::Vector3& axis = link.parent_joint->axis;
+      Eigen::Isometry3d link_from_body = Eigen::Isometry3d::Identity();
+      link_from_body.linear() =
+          Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3(axis.x, axis.y, axis.z)).toRotationMatrix();
+      arm.joint_placement[++arm.joints] = body_from_link * link_from_body;
+      arm.joint_names.push_back(link.parent_joint->name);
+      append_limits(arm.limits, *link.parent_joint);
+      body_from_link = link_from_body.inverse();
+    }
+    shapes.collect(link, arm.joints, body_from_link);
+  }
+  arm.last_body_from_tool = body_from_link;
+
+  if (arm.joints < kMinJoints)
+    fail("{}: {} joints from '{}' to '{}', at least {} are needed", urdf_file, arm.joints, base, tip, kMinJoints);
+  if (arm.shapes.empty())
+    fail("{}: no link from '{}' to '{}' has collision geometry, so nothing could be kept clear", urdf_file, base, tip);
+  if (arm.shapes.size() > static_cast<size_t>(kMaxShapes))
+    fail("{}: {} collision shapes from '{}' to '{}', at most {} are possible", urdf_file, arm.shapes.size(), base, tip,
+         kMaxShapes);
+  return arm;
+}
+
+void check_limits(const Arm& arm) {
+  const JointLimits& limits = arm.limits;
+  for (int i = 0; i < arm.joints; ++i) {
+    const std::string& name = arm.joint_names[static_cast<size_t>(i)];
+    if (!(limits.lower_rad[i] < limits.upper_rad[i]))
+      fail("joint '{}': lower limit {} must be below upper limit {}", name, limits.lower_rad[i], limits.upper_rad[i]);
+    if (!(std::isfinite(limits.velocity_radps[i]) && limits.velocity_radps[i] > 0.0))
+      fail("joint '{}': velocity limit {} must be finite and positive", name, limits.velocity_radps[i]);
+    if (!(std::isfinite(limits.acceleration_radps2[i]) && limits.acceleration_radps2[i] > 0.0))
+      fail("joint '{}': acceleration limit {} must be finite and positive", name, limits.acceleration_radps2[i]);
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+#include "firmware/model/kinematics.h"
+
+#include <cmath>
+
+namespace sidestep {
+
+Posture forward(const Arm& arm, const JointVector& q_rad) {
+  Posture posture;
+  posture.joints = arm.joints;
+  posture.rotation[0].setIdentity();
+  posture.origin[0].setZero();
+  for (int i = 1; i <= arm.joints; ++i) {
+    const Eigen::Isometry3d& placement = arm.joint_placement[i];
+    const Matrix3& parent = posture.rotation[i - 1];
+    const Matrix3 before = parent * placement.linear();
+    const double c = std::cos(q_rad[i - 1]), s = std::sin(q_rad[i - 1]);
+    posture.rotation[i].col(0) = c * before.col(0) + s * before.col(1);
+    posture.rotation[i].col(1) = c * before.col(1) - s * before.col(0);
+    posture.rotation[i].col(2) = before.col(2);
+    posture.origin[i] = posture.origin[i - 1] + parent * placement.translation();
+  }
+  const Matrix3& last = posture.rotation[arm.joints];
+  posture.tool_rotation = last * arm.last_body_from_tool.linear();
+  posture.tool_position = posture.origin[arm.joints] + last * arm.last_body_from_tool.translation();
+  return posture;
+}
+
+Capsule placed(const Posture& posture, const LinkShape& shape) {
+  const Matrix3& rotation = posture.rotation[shape.body];
+  const Vector3& origin = posture.origin[shape.body];
+  const Capsule& capsule = shape.capsule_body;
+  return {origin + rotation * capsule.start, origin + rotation * capsule.end, capsule.radius_m};
+}
+
+PointJacobian point_jacobian(const Posture& posture, int body, const Vector3& p_base) {
+  PointJacobian jacobian = PointJacobian::Zero(3, posture.joints);
+  for (int i = 1; i <= body; ++i) jacobian.col(i - 1) = posture.rotation[i].col(2).cross(p_base - posture.origin[i]);
+  return jacobian;
+}
+
+TaskJacobian tool_jacobian(const Posture& posture, int rows) {
+  TaskJacobian jacobian(rows, posture.joints);
+  jacobian.topRows<3>() = point_jacobian(posture, posture.joints, posture.tool_position);
+  if (rows == 6)
+    for (int i = 1; i <= posture.joints; ++i) jacobian.col(i - 1).tail<3>() = posture.rotation[i].col(2);
+  return jacobian;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace sidestep {
+
+constexpr int kMinJoints = 6;
+constexpr int kMaxJoints = 10;
+constexpr int kMaxShapes = 64;  ///< of an arm
+constexpr int kMaxObstacles = 4096;
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Quaternion = Eigen::Quaterniond;
+
+/// Sized at run time, stored in place: none of these touches the heap.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
+using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints>;
+
+/// A task is the tool's position (3 rows) or its position and orientation (6 rows: linear, then angular).
+using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxJoints>;
+
+}  // namespace sidestep
