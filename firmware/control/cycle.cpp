@@ -7,6 +7,8 @@
 #include "firmware/control/limits.h"
 #include "firmware/control/observe.h"
 #include "firmware/control/paper_law.h"
+#include "firmware/control/shield.h"
+#include "firmware/control/sidestep_law.h"
 
 namespace sidestep {
 namespace {
@@ -40,6 +42,7 @@ void start_from(const ArmState& arm, State& next) {
 /// The joint velocity that the law wishes for; at rest unless tracking.
 Wish ask_law(const Model& model, const Situation& situation, const State& state) {
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
+  if (model.settings.law == Law::kSidestep) return sidestep_law(model.settings.sidestep, situation);
   const Vector3* planned = state.planning ? &state.planned_mps : nullptr;
   return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
 }
@@ -63,19 +66,48 @@ JointVector lead(const Model& model, const State& state, const ArmState& arm, co
   return position_rad;
 }
 
+/// The velocities that the joint limits leave for the coming period, wherever between command and measurement the arm
+/// is.
+VelocityRange next_range(const Model& model, const State& state, const ArmState& arm) {
+  return velocity_range(model.arm.limits, state.position_rad.cwiseMin(arm.position_rad),
+                        state.position_rad.cwiseMax(arm.position_rad), state.velocity_radps, model.settings.period_s());
+}
+
+/// Far from the target there are many ways, so a comfortable one is worth a detour; at the target the tool comes first.
+double comfort_weight(const ShieldSettings& shield, const Situation& situation, Mode mode) {
+  if (mode != Mode::kTrack) return shield.comfort_least_weight;
+  const double distance_m = (situation.target.position_m - situation.posture.tool_position).norm();
+  const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
+  return shield.comfort_least_weight +
+         std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
+}
+
+/// The wish made safe: by the shield where it is on, else left to the limits alone.
+JointVector keep_clear(const Model& model, const Situation& situation, const ArmState& arm, const VelocityRange& range,
+                       const State& state, const Wish& wish) {
+  const Settings& settings = model.settings;
+  const Mode mode = state.supervision.mode;
+  if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
+  if (mode != Mode::kTrack && mode != Mode::kHold) return wish.velocity_radps;
+  const Surroundings around{
+      model.arm,           situation.posture,   arm.position_rad, state.velocity_radps,
+      situation.clearance, situation.obstacles, model.self_pairs, comfort_weight(settings.shield, situation, mode)};
+  const VelocityRange lasting =
+      lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
+  const TaskJacobian jacobian = tool_jacobian(situation.posture, situation.target.tracks_orientation ? 6 : 3);
+  return shield(settings.shield, around, lasting, range, jacobian, wish.velocity_radps).velocity_radps;
+}
+
 /// The last word before a command leaves: within all limits, or braking.
-Command gate(const Model& model, const State& state, const ArmState& arm, JointVector velocity_radps, int& limiting) {
+Command gate(const Model& model, const State& state, const ArmState& arm, const VelocityRange& range,
+             JointVector velocity_radps, int& limiting) {
   const double period_s = model.settings.period_s();
   const JointLimits& limits = model.arm.limits;
   const Mode mode = state.supervision.mode;
-  if (mode == Mode::kHold || mode == Mode::kTrack) {
-    const VelocityRange range =
-        velocity_range(limits, state.position_rad.cwiseMin(arm.position_rad),
-                       state.position_rad.cwiseMax(arm.position_rad), state.velocity_radps, period_s);
+  if (mode == Mode::kHold || mode == Mode::kTrack)
     limiting |= apply_limits(limits, range, state.velocity_radps, period_s, velocity_radps);
-  } else {
+  else
     velocity_radps = brake(limits, state.velocity_radps, period_s);
-  }
   return {lead(model, state, arm, velocity_radps), velocity_radps};
 }
 
@@ -128,18 +160,23 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
 
     const Posture posture = forward(model.arm, arm.position_rad);
     const ObstacleView obstacles = view_obstacles(model.settings, inputs.obstacles, now_s);
-    const Clearance clearance = measure_clearance(model.arm, posture, obstacles, model.settings.near_range_m);
+    const Reach reach{model.settings.shield.range_m, model.settings.shield.pass_horizon_s};
+    const Clearance clearance = measure_clearance(model.arm, posture, obstacles, reach);
     const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
 
-    const Wish wish = ask_law(model, {model.arm, posture, arm.velocity_radps, target, obstacles, clearance}, next);
-    if (!wish.velocity_radps.allFinite()) distrust(now_s, next);
-
-    result.command = gate(model, next, arm, wish.velocity_radps, report.limiting);
+    const Situation situation{model.arm, posture, arm.velocity_radps, target, obstacles, clearance};
+    const Wish wish = ask_law(model, situation, next);
+    const VelocityRange range = next_range(model, next, arm);
+    const JointVector safe = keep_clear(model, situation, arm, range, next, wish);
+    if (!safe.allFinite()) distrust(now_s, next);
+    result.command = gate(model, next, arm, range, safe, report.limiting);
     remember(result.command, wish, next);
 
     report_tool(posture, arm, report);
     report_clearance(clearance, inputs.obstacles, report);
     if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();
+    report.shield_correction_radps = (safe - wish.velocity_radps).norm();
+    if (report.shield_correction_radps > 1e-6) report.limiting |= kLimitingShield;
     report.beta = wish.beta;
     report.damping = wish.damping;
     if (wish.task_speed_limited) report.limiting |= kLimitingTaskSpeed;

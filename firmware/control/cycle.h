@@ -1,6 +1,8 @@
 #pragma once
 
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "firmware/control/inputs.h"
 #include "firmware/control/supervisor.h"
@@ -12,6 +14,7 @@ namespace sidestep {
 struct Model {
   Arm arm;
   Settings settings;
+  std::vector<std::pair<int, int>> self_pairs;  ///< link shapes that must keep clear of each other
 };
 
 /// What one cycle is given. Messages are already checked (io/admission); they stay valid during the call.

@@ -7,16 +7,16 @@ namespace {
 constexpr double kRankTolerance = 1e-6;
 }  // namespace
 
-double damping_squared(const PaperGains& gains, double sigma_m) {
-  if (sigma_m >= gains.sigma_0) return 0.0;
-  const double share = 1.0 - sigma_m / gains.sigma_0;
-  return gains.lambda_0 * gains.lambda_0 * share * share;
+double damping_squared(double lambda_0, double sigma_0, double sigma_m) {
+  if (sigma_m >= sigma_0) return 0.0;
+  const double share = 1.0 - sigma_m / sigma_0;
+  return lambda_0 * lambda_0 * share * share;
 }
 
 TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian) {
   const Eigen::JacobiSVD<TaskJacobian> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const auto& sigma = svd.singularValues();
-  const double lambda2 = damping_squared(gains, sigma[sigma.size() - 1]);
+  const double lambda2 = damping_squared(gains.lambda_0, gains.sigma_0, sigma[sigma.size() - 1]);
 
   TaskInverse inverse;
   inverse.lambda = std::sqrt(lambda2);

@@ -15,7 +15,7 @@ struct TaskInverse {
 };
 
 /// lambda^2 of paper eq (6) for the smallest singular value sigma_m of the task Jacobian.
-double damping_squared(const PaperGains& gains, double sigma_m);
+double damping_squared(double lambda_0, double sigma_0, double sigma_m);
 
 TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian);
 

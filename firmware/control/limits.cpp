@@ -15,17 +15,27 @@ double stopping_velocity(double gap_rad, double acceleration_radps2, double peri
   return std::copysign(v, gap_rad);
 }
 
+VelocityRange lasting_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
+                            double period_s) {
+  VelocityRange range{lowest_rad, highest_rad};
+  for (Eigen::Index i = 0; i < lowest_rad.size(); ++i) {
+    const double a = limits.acceleration_radps2[i], v_max = limits.velocity_radps[i];
+    const double down = -stopping_velocity(lowest_rad[i] - limits.lower_rad[i], a, period_s);
+    const double up = stopping_velocity(limits.upper_rad[i] - highest_rad[i], a, period_s);
+    range.lower_radps[i] = std::clamp(down, -v_max, v_max);
+    range.upper_radps[i] = std::max(std::clamp(up, -v_max, v_max), range.lower_radps[i]);
+  }
+  return range;
+}
+
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s) {
-  VelocityRange range{last_velocity_radps, last_velocity_radps};
+  VelocityRange range = lasting_range(limits, lowest_rad, highest_rad, period_s);
   for (Eigen::Index i = 0; i < lowest_rad.size(); ++i) {
-    const double a = limits.acceleration_radps2[i], v_max = limits.velocity_radps[i], last = last_velocity_radps[i];
-    const double up = stopping_velocity(limits.upper_rad[i] - highest_rad[i], a, period_s);
-    const double down = -stopping_velocity(lowest_rad[i] - limits.lower_rad[i], a, period_s);
-    const double lower = std::clamp(down, -v_max, v_max), upper = std::clamp(up, -v_max, v_max);
-    const double slowest = last - a * period_s, fastest = last + a * period_s;
-    range.lower_radps[i] = std::clamp(lower, slowest, fastest);
-    range.upper_radps[i] = std::max(std::clamp(upper, slowest, fastest), range.lower_radps[i]);
+    const double change = limits.acceleration_radps2[i] * period_s;
+    const double slowest = last_velocity_radps[i] - change, fastest = last_velocity_radps[i] + change;
+    range.lower_radps[i] = std::clamp(range.lower_radps[i], slowest, fastest);
+    range.upper_radps[i] = std::clamp(range.upper_radps[i], slowest, fastest);
   }
   return range;
 }

@@ -17,6 +17,11 @@ struct VelocityRange {
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s);
 
+/// Velocities that every joint could come to and keep up for a while: its velocity limits, less what it needs to stop
+/// before its position limits. As velocity_range() without the accelerations.
+VelocityRange lasting_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
+                            double period_s);
+
 /// Largest velocity toward a limit gap_rad away from which the joint can stop within it, one period of travel included.
 /// Negative gap: past the limit, velocity back.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);

@@ -1,29 +1,8 @@
 #pragma once
 
-#include "firmware/control/messages.h"
-#include "firmware/control/settings.h"
-#include "firmware/model/clearance.h"
+#include "firmware/control/law.h"
 
 namespace sidestep {
-
-/// What a law is asked in one cycle.
-struct Situation {
-  const Arm& arm;
-  const Posture& posture;
-  const JointVector& velocity_radps;  ///< measured
-  const Target& target;               ///< moved forward to the present
-  const ObstacleView& obstacles;
-  const Clearance& clearance;
-};
-
-/// What a law answers.
-struct Wish {
-  JointVector velocity_radps;
-  Vector3 tool_velocity_mps = Vector3::Zero();  ///< X of paper-notes item 4, linear part
-  double beta = 0.0;
-  double damping = 0.0;
-  bool task_speed_limited = false;
-};
 
 /// The paper's law before joint limits, eqs (3) to (19) as settled by paper-notes items 1 to 9. `planned_mps` is X of
 /// the cycle before, or null when the arm was not tracking; used with tool_velocity: planned.

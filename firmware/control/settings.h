@@ -30,6 +30,35 @@ struct PaperGains {
   ToolVelocity tool_velocity = ToolVelocity::kMeasured;
 };
 
+/// The law of our own: where the tool shall go, before the shield.
+struct SidestepGains {
+  double k_pos_per_s = 8.0;  ///< tool speed over distance to the target
+  double k_ori_per_s = 4.0;  ///< likewise for the angle, when the target asks for an orientation
+  double v_max_mps = 1.0;    ///< largest tool speed toward the target, beside the target's own
+  double lambda_0 = 0.05;    ///< largest damping near singular postures, paper eq (6)
+  double sigma_0 = 0.05;     ///< damping begins below this singular value
+};
+
+/// The shield: the joint velocity nearest to the wish that keeps clear.
+struct ShieldSettings {
+  bool enabled = true;             ///< off for experiments only
+  double hard_clearance_m = 0.02;  ///< never given up while the limits allow
+  double hard_gain_per_s = 15.0;   ///< clearance above it may shrink by this share a second
+  double pass_clearance_m = 0.04;  ///< at the closest approach of a moving obstacle
+  double pass_gain_per_s = 6.0;
+  double pass_reaction_s = 0.12;      ///< the arm's own time to get moving
+  double pass_horizon_s = 1.2;        ///< how far ahead an obstacle's way is looked at
+  double comfort_clearance_m = 0.16;  ///< kept where the task leaves room
+  double comfort_gain_per_s = 4.0;
+  double comfort_far_m = 0.4;         ///< with the tool farther than this from the target comfort has its full weight,
+  double comfort_near_m = 0.15;       ///< nearer than this the least: then it may move the arm but hardly the tool
+  double comfort_least_weight = 1.0;  ///< s2/m2
+  double comfort_weight = 300.0;      ///< of the comfort against the wish, s2/m2
+  double tool_weight = 10.0;          ///< of the tool's velocity against the joints', 1/m2
+  double self_clearance_m = 0.02;     ///< between links that are no neighbours
+  double range_m = 0.4;               ///< pairs farther apart do not matter yet
+};
+
 /// Ages by local receipt time after which an input no longer counts, s, and what happens then.
 struct Ages {
   double target_s = 0.250;          ///< brake to hold
@@ -45,11 +74,11 @@ struct Settings {
   double rate_hz = 100.0;
   PaperGains paper;
   Ages ages;
-  bool shield_enabled = true;             ///< of the sidestep law; off for experiments only
-  bool foresight_enabled = true;          ///< likewise
+  SidestepGains sidestep;
+  ShieldSettings shield;
+  bool foresight_enabled = true;          ///< off for experiments only
   bool wait_for_obstacles = true;         ///< false: no obstacle set ever received counts as no obstacles
   double obstacle_speed_bound_mps = 2.0;  ///< how fast an obstacle that is no longer reported may move
-  double near_range_m = 0.4;              ///< obstacles farther from the arm than this do not matter yet
   double following_error_rad = 0.1;       ///< largest distance of the command ahead of the measured arm, per joint
 
   double period_s() const { return 1.0 / rate_hz; }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "firmware/io/config_section.h"
+#include "firmware/model/self_pairs.h"
 
 namespace sidestep {
 namespace {
@@ -59,6 +60,38 @@ void read_paper(Section paper, PaperGains& gains) {
   paper.finish();
 }
 
+void read_sidestep(Section sidestep, SidestepGains& gains) {
+  sidestep.positive("k_pos_per_s", gains.k_pos_per_s);
+  sidestep.positive("k_ori_per_s", gains.k_ori_per_s);
+  sidestep.positive("v_max_mps", gains.v_max_mps);
+  sidestep.not_negative("lambda_0", gains.lambda_0);
+  sidestep.positive("sigma_0", gains.sigma_0);
+  sidestep.finish();
+}
+
+void read_shield(Section section, ShieldSettings& shield) {
+  section.flag("enabled", shield.enabled);
+  section.not_negative("hard_clearance_m", shield.hard_clearance_m);
+  section.positive("hard_gain_per_s", shield.hard_gain_per_s);
+  section.not_negative("pass_clearance_m", shield.pass_clearance_m);
+  section.positive("pass_gain_per_s", shield.pass_gain_per_s);
+  section.not_negative("pass_reaction_s", shield.pass_reaction_s);
+  section.not_negative("pass_horizon_s", shield.pass_horizon_s);
+  section.not_negative("comfort_clearance_m", shield.comfort_clearance_m);
+  section.positive("comfort_gain_per_s", shield.comfort_gain_per_s);
+  section.positive("comfort_weight", shield.comfort_weight);
+  section.positive("comfort_least_weight", shield.comfort_least_weight);
+  section.not_negative("comfort_near_m", shield.comfort_near_m);
+  section.positive("comfort_far_m", shield.comfort_far_m);
+  if (shield.comfort_far_m <= shield.comfort_near_m) section.fail("comfort_far_m", "must be above comfort_near_m");
+  section.not_negative("tool_weight", shield.tool_weight);
+  section.not_negative("self_clearance_m", shield.self_clearance_m);
+  section.positive("range_m", shield.range_m);
+  if (shield.pass_clearance_m <= shield.hard_clearance_m)
+    section.fail("pass_clearance_m", "must be above hard_clearance_m");
+  section.finish();
+}
+
 void read_ages(Section section, Ages& ages) {
   section.positive("target_s", ages.target_s);
   section.positive("obstacles_s", ages.obstacles_s);
@@ -90,7 +123,6 @@ void read_channels(Section section, Channels& channels) {
   section.finish();
 }
 
-/// Switches of parts that experiments turn off; they are the sidestep law's own.
 void read_switch(Section section, bool& enabled) {
   section.flag("enabled", enabled);
   section.finish();
@@ -125,12 +157,14 @@ Config load_config(const std::string& file, const Overrides& overrides) {
 
   config.model.arm = read_robot(root.section("robot"), file, overrides);
   read_limits(root.section("limits"), config.model.arm);
+  config.model.self_pairs = find_self_pairs(config.model.arm);
   read_control(root.section("control"), settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
-  read_switch(root.section("shield"), settings.shield_enabled);
+  read_sidestep(root.section("sidestep"), settings.sidestep);
+  read_shield(root.section("shield"), settings.shield);
   read_switch(root.section("foresight"), settings.foresight_enabled);
   root.finish();
   return config;

@@ -20,15 +20,19 @@ struct Bounds {
   double distance_m(const Vector3& p) const { return (p - p.cwiseMax(lower).cwiseMin(upper)).norm(); }
 };
 
-void keep_near(Clearance& clearance, const Proximity& pair) {
+/// How pressing a pair is: the nearer now or at its approach, the more.
+double pressing_m(const NearPair& pair) {
+  return std::min(pair.now.distance_m, pair.approach.distance_m);
+}
+
+void keep_near(Clearance& clearance, const NearPair& pair) {
   if (clearance.near_count < kMaxNear) {
-    clearance.near[static_cast<size_t>(clearance.near_count++)] = pair;
+    clearance.near[clearance.near_count++] = pair;
     return;
   }
-  const auto farthest =
-      std::max_element(clearance.near.begin(), clearance.near.end(),
-                       [](const Proximity& a, const Proximity& b) { return a.distance_m < b.distance_m; });
-  if (pair.distance_m < farthest->distance_m) *farthest = pair;
+  const auto least = std::max_element(clearance.near.begin(), clearance.near.end(),
+                                      [](const auto& a, const auto& b) { return pressing_m(a) < pressing_m(b); });
+  if (pressing_m(pair) < pressing_m(*least)) *least = pair;
 }
 
 }  // namespace
@@ -48,7 +52,30 @@ Proximity measure_pair(const Capsule& link, const Capsule& obstacle) {
   return pair;
 }
 
-Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, double range_m) {
+Approach predict_approach(const Capsule& link, const Capsule& obstacle, const Vector3& velocity_mps, double horizon_s) {
+  const Vector3 point = nearest_on_axes(link, obstacle).b;
+  const Vector3 path = velocity_mps * horizon_s;
+  const NearestPoints points = nearest_on_axes(link, {point, point + path, 0.0});
+  Approach approach;
+  approach.on_arm = points.a;
+  const double length2 = path.squaredNorm();
+  approach.time_s = length2 > 0.0 ? horizon_s * path.dot(points.b - point) / length2 : 0.0;
+  const Vector3 gap = points.a - points.b;
+  const double axis_distance_m = approach.axis_distance_m = gap.norm();
+  approach.distance_m = axis_distance_m - link.radius_m - obstacle.radius_m;
+  // A path through the axis itself can be left to either side; within this distance the side is not yet decided.
+  const double undecided_m = 0.005;
+  approach.head_on = axis_distance_m < undecided_m;
+  if (!approach.head_on) {
+    approach.normal = gap / axis_distance_m;
+    return approach;
+  }
+  const Vector3 across = path.cross(link.end - link.start);
+  approach.normal = across.norm() > 1e-9 ? across.normalized() : path.unitOrthogonal();
+  return approach;
+}
+
+Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
   if (!view.set) return clearance;
 
@@ -67,20 +94,21 @@ Clearance measure_clearance(const Arm& arm, const Posture& posture, const Obstac
     const double half_length_m = 0.5 * (reported.end - reported.start).norm();
     const double axis_bound_m = bounds.distance_m(centre) - half_length_m;
     const double surface_bound_m = axis_bound_m - bounds.radius_m - reported.radius_m - view.growth_m;
-    if (surface_bound_m > range_m && surface_bound_m > clearance.nearest.distance_m &&
-        axis_bound_m > clearance.nearest_axis.axis_distance_m)
+    if (surface_bound_m - obstacle.velocity_mps.norm() * reach.horizon_s > reach.range_m &&
+        surface_bound_m > clearance.nearest.distance_m && axis_bound_m > clearance.nearest_axis.axis_distance_m)
       continue;
 
     Capsule present = moved(obstacle, view.age_s);
     present.radius_m += view.growth_m;
     for (int s = 0; s < shapes; ++s) {
-      Proximity pair = measure_pair(links[s], present);
-      pair.shape = s;
-      pair.obstacle = o;
-      if (pair.distance_m < clearance.nearest.distance_m) clearance.nearest = pair;
+      Proximity now = measure_pair(links[s], present);
+      now.shape = s;
+      now.obstacle = o;
+      if (now.distance_m < clearance.nearest.distance_m) clearance.nearest = now;
       if (arm.shapes[s].body == 0) continue;
-      if (pair.axis_distance_m < clearance.nearest_axis.axis_distance_m) clearance.nearest_axis = pair;
-      if (pair.distance_m < range_m) keep_near(clearance, pair);
+      if (now.axis_distance_m < clearance.nearest_axis.axis_distance_m) clearance.nearest_axis = now;
+      const NearPair pair{now, predict_approach(links[s], present, obstacle.velocity_mps, reach.horizon_s)};
+      if (pressing_m(pair) < reach.range_m) keep_near(clearance, pair);
     }
   }
   return clearance;

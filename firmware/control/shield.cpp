@@ -1,0 +1,19 @@
+#include "firmware/control/shield.h"
+
+#include "firmware/control/evasion.h"
+
+namespace sidestep {
+
+Shielded shield(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
+                const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& wish_radps) {
+  const ShieldRows rows = make_rows(settings, now, lasting, false);
+  const Nearness to_wish{wish_radps, tool_jacobian, settings.tool_weight, now.comfort_weight};
+  QpSolution plan = solve(rows, lasting, to_wish);
+  plan = choose_sides(settings, now, rows, lasting, to_wish, plan);
+
+  const Nearness to_plan{plan.velocity_radps, tool_jacobian, 0.0, now.comfort_weight};
+  const QpSolution safe = solve(make_rows(settings, now, range, true), range, to_plan);
+  return {safe.velocity_radps, safe.loss_mps};
+}
+
+}  // namespace sidestep

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "firmware/control/law.h"
+#include "firmware/control/limits.h"
+
+namespace sidestep {
+
+/// What the shield has to know beside the wish.
+struct Surroundings {
+  const Arm& arm;
+  const Posture& posture;
+  const JointVector& position_rad;
+  const JointVector& last_velocity_radps;  ///< commanded
+  const Clearance& clearance;
+  const ObstacleView& obstacles;
+  const std::vector<std::pair<int, int>>& self_pairs;
+  double comfort_weight;  ///< at present, s2/m2
+};
+
+/// What the shield made of a wish.
+struct Shielded {
+  JointVector velocity_radps;
+  double loss_mps = 0.0;  ///< by how much the worst hard clearance had to be given up, 0 if none
+};
+
+/// The joint velocity within `range` that keeps clear and is nearest to the wish. Nearest counts the tool's velocity
+/// more than the joints', so that an obstacle is evaded with the rest of the arm where that is possible.
+///
+/// Three tiers of conditions  row . q' >= bound  on the joint velocity:
+///   hard     d' >= -gain (d - clearance), the obstacle's velocity included (a control barrier on the distance), for
+///            every pair of a link with an obstacle or with another link; given up only where the limits leave nothing
+///            else, and then the worst pair first
+///   pass     the closest approach of a moving obstacle stays clear: out of its way, not before it away
+///   comfort  a larger distance, as far as it costs the wish little
+///
+/// First the velocity that the arm shall come to, within `lasting`, what it can keep up; then the step toward it that
+/// the accelerations allow in one period, under the hard tier alone.
+Shielded shield(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
+                const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& wish_radps);
+
+}  // namespace sidestep

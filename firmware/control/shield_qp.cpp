@@ -1,0 +1,119 @@
+#include "firmware/control/shield_qp.h"
+
+#include <cmath>
+#include <eiquadprog/eiquadprog-rt.hpp>
+
+namespace sidestep {
+namespace {
+
+constexpr int kMostIterations = 200;
+constexpr int kMostRounds = 3;
+
+// Unknowns: the joint velocities, then a slack for each tier. A slack is scaled so that its weight is 1; what is left
+// of the weight is by how much a unit of it relieves a row: 1 / sqrt(weight).
+constexpr int kUnknowns = kMaxJoints + kTiers;
+constexpr double kHardRelief = 1e-3;
+constexpr double kPassRelief = 3e-2;
+
+using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+double relief(const Nearness& near, Tier tier) {
+  if (tier == Tier::kHard) return kHardRelief;
+  if (tier == Tier::kPass) return kPassRelief;
+  return 1.0 / std::sqrt(near.comfort_weight);
+}
+
+/// min 1/2 x' hessian x + gradient' x  subject to  conditions x + offsets >= 0, for at most `row_capacity` rows.
+template <int row_capacity>
+struct Problem {
+  static constexpr int kSlacks = 2 * kMaxJoints;
+  static constexpr int kRows = kSlacks + kTiers;
+  static constexpr int kConditions = kRows + row_capacity;
+
+  Hessian hessian = Hessian::Identity();
+  Unknowns gradient = Unknowns::Zero();
+  Eigen::Matrix<double, kConditions, kUnknowns> conditions = Eigen::Matrix<double, kConditions, kUnknowns>::Zero();
+  Eigen::Matrix<double, kConditions, 1> offsets = Eigen::Matrix<double, kConditions, 1>::Ones();
+
+  Problem(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
+    const int n = static_cast<int>(near.wish_radps.size());
+    hessian.topLeftCorner(n, n) += near.tool_weight * near.tool_jacobian.transpose() * near.tool_jacobian;
+    gradient.head(n) = -hessian.topLeftCorner(n, n) * near.wish_radps;
+    for (int i = 0; i < n; ++i) {
+      conditions(2 * i, i) = 1.0;
+      offsets[2 * i] = -range.lower_radps[i];
+      conditions(2 * i + 1, i) = -1.0;
+      offsets[2 * i + 1] = range.upper_radps[i];
+    }
+    for (int tier = 0; tier < kTiers; ++tier) {
+      conditions(kSlacks + tier, kMaxJoints + tier) = 1.0;
+      offsets[kSlacks + tier] = 0.0;
+    }
+    for (int i = 0; i < rows.count; ++i) {
+      const ShieldRow& row = rows.rows[i];
+      conditions.row(kRows + i).head(n) = row.row.transpose();
+      conditions(kRows + i, kMaxJoints + static_cast<int>(row.tier)) = relief(near, row.tier);
+      offsets[kRows + i] = -row.bound;
+    }
+  }
+
+  bool solve(Unknowns& x) const {
+    eiquadprog::solvers::RtEiquadprog<kUnknowns, 0, kConditions> solver;
+    solver.setMaxIter(kMostIterations);
+    const auto status = solver.solve_quadprog(hessian, gradient, Eigen::Matrix<double, 0, kUnknowns>(),
+                                              Eigen::Matrix<double, 0, 1>(), conditions, offsets, x);
+    return status == eiquadprog::solvers::RT_EIQUADPROG_OPTIMAL && x.allFinite();
+  }
+
+  /// The hard rows that had to be given up stay given up by just that much; the others may not hide behind them.
+  void settle_worst(const Unknowns& x, double loss_mps) {
+    for (int c = kRows; c < kConditions; ++c) {
+      double& coefficient = conditions(c, kMaxJoints);
+      const double rounding = 1e-6;
+      if (coefficient == 0.0 || conditions.row(c).dot(x) + offsets[c] > rounding) continue;
+      coefficient = 0.0;
+      offsets[c] += loss_mps + rounding;
+    }
+  }
+};
+
+template <int row_capacity>
+QpSolution solve_sized(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
+  const Eigen::Index n = near.wish_radps.size();
+  QpSolution solution{near.wish_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
+  Problem<row_capacity> problem(rows, range, near);
+  const double wish_cost = -0.5 * problem.gradient.head(n).dot(near.wish_radps);
+  for (int round = 0; round < kMostRounds; ++round) {
+    Unknowns x;
+    if (!problem.solve(x)) break;
+    solution.velocity_radps = x.head(n).cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
+    solution.cost = wish_cost + 0.5 * x.dot(problem.hessian * x) + problem.gradient.dot(x);
+    const double loss_mps = x[kMaxJoints] * kHardRelief;
+    solution.loss_mps = std::max(solution.loss_mps, loss_mps);
+    const double negligible_mps = 1e-4;
+    if (loss_mps < negligible_mps) break;
+    problem.settle_worst(x, loss_mps);
+  }
+  return solution;
+}
+
+/// The wish itself, where nothing stands against it: most cycles need no QP.
+bool is_met(const ShieldRows& rows, const VelocityRange& range, const JointVector& wish_radps) {
+  if ((wish_radps.array() < range.lower_radps.array()).any() || (wish_radps.array() > range.upper_radps.array()).any())
+    return false;
+  for (int i = 0; i < rows.count; ++i)
+    if (rows.rows[i].row.dot(wish_radps) < rows.rows[i].bound) return false;
+  return true;
+}
+
+}  // namespace
+
+QpSolution solve(const ShieldRows& rows, const VelocityRange& range, const Nearness& nearness) {
+  if (is_met(rows, range, nearness.wish_radps)) return {nearness.wish_radps};
+  constexpr int kFewRows = 12;
+  return rows.count <= kFewRows ? solve_sized<kFewRows>(rows, range, nearness)
+                                : solve_sized<kMaxRows>(rows, range, nearness);
+}
+
+}  // namespace sidestep

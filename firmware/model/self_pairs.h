@@ -1,0 +1,15 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "firmware/model/arm.h"
+
+namespace sidestep {
+
+/// Pairs of link shapes, as indices, that must keep clear of each other: all on different bodies except neighbours
+/// (joined by nothing but joints without a shape of their own) and those that touch in most postures, because they are
+/// built that way. For start-up; samples postures with a fixed seed.
+std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm);
+
+}  // namespace sidestep
