@@ -2,6 +2,10 @@
 
 BUILD    := build
 SCENARIO ?= paper-c
+FAMILY   ?= all
+COUNT    ?= 500
+SEED     ?= 1
+LAW      ?= sidestep
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
 .DEFAULT_GOAL := all
 
@@ -17,9 +21,11 @@ objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware/*/*.cpp))
 SIM      := $(call objects,$(call sources,host/sim/*.cpp))
+CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign
+LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
 
@@ -35,6 +41,9 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 
 all: $(PROGRAMS) ## set up what is missing and build the programs
 
+campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
+	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
+
 figures: all ## figures of the paper's three simulations, both laws, and the trade-off over the gains
 	@$(PYTHON) host/tools/figures.py
 
@@ -48,7 +57,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test figures lint clean help
+.PHONY: all run test campaign figures lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -75,6 +84,7 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)
 
 $(BUILD)/libfirmware.a: $(FIRMWARE)
 $(BUILD)/libsim.a: $(SIM)
+$(BUILD)/libcampaign.a: $(CAMPAIGN)
 $(BUILD)/libsupport.a: $(SUPPORT)
 $(BUILD)/lib%.a:
 	@rm -f $@ && ar rcs $@ $^
@@ -85,7 +95,10 @@ $(BUILD)/controller: $(BUILD)/obj/firmware/main.o $(BUILD)/libfirmware.a
 $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
-$(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(BUILD)/libsupport.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a $(PROGRAMS)
+$(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)
 	@$(CXX) $(CXXFLAGS) $(filter %.o %.a,$^) -lfcl -lccd -lcmocka $(LIBS) -o $@
 

@@ -1,0 +1,77 @@
+#include "host/campaign/family.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace sidestep::campaign {
+namespace {
+
+Family plain(const std::string& name, int most_obstacles, double speed_mps) {
+  return {name, name, most_obstacles, speed_mps};
+}
+
+std::vector<Family> make_families() {
+  std::vector<Family> all{plain("moving", 6, 0.3),    plain("fast", 6, 0.6),  plain("crowd", 20, 0.3),
+                          plain("clutter", 15, 0.02), plain("chase", 6, 0.3), plain("erratic", 6, 0.4),
+                          plain("real", 6, 0.3)};
+  all[4].chase = true;
+  all[5].erratic = true;
+  all[6].real = true;
+  all[6].stream = "moving";
+  const auto add_dodge = [&all](const char* kind, int spheres, double speed_mps, bool hold_orientation) {
+    Family family{fmt::format("{}@{}", kind, speed_mps), "dodge", spheres, speed_mps};
+    family.dodge = true;
+    family.hold_orientation = hold_orientation;
+    all.push_back(family);
+  };
+  for (double speed_mps : {0.1, 0.25, 0.5, 1.0, 2.0}) add_dodge("dodge", 1, speed_mps, false);
+  for (double speed_mps : {0.5, 1.0}) add_dodge("dodge3", 3, speed_mps, false);
+  for (double speed_mps : {0.1, 0.25, 0.5, 1.0, 2.0}) add_dodge("dodge6d", 1, speed_mps, true);
+  return all;
+}
+
+Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, double velocity_radps) {
+  Limits limits;
+  limits.upper_rad << odd_rad, rad_2, odd_rad, rad_4, odd_rad, rad_6, odd_rad;
+  limits.lower_rad = -limits.upper_rad;
+  limits.velocity_radps.setConstant(velocity_radps);
+  limits.acceleration_radps2.setConstant(10.0);
+  return limits;
+}
+
+}  // namespace
+
+Limits benchmark_limits() {
+  return symmetric(2.9, 1.9, 2.1, 2.0, 1.2);
+}
+
+Limits Family::limits() const {
+  return dodge ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : benchmark_limits();
+}
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> all = make_families();
+  return all;
+}
+
+std::vector<const Family*> families_of(const std::string& word) {
+  std::vector<const Family*> chosen;
+  std::string known = "all, dodge";
+  for (const Family& family : families()) {
+    if (word == "all" || word == family.name || (word == "dodge" && family.dodge)) chosen.push_back(&family);
+    known += ", " + family.name;
+  }
+  if (chosen.empty()) throw std::runtime_error(fmt::format("no family '{}'; there are {}", word, known));
+  return chosen;
+}
+
+const Family& family_named(const std::string& name) {
+  const auto found =
+      std::find_if(families().begin(), families().end(), [&](const Family& family) { return family.name == name; });
+  if (found == families().end()) throw std::runtime_error(fmt::format("no family '{}'", name));
+  return *found;
+}
+
+}  // namespace sidestep::campaign

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "firmware/control/cycle.h"
+#include "host/campaign/sensing.h"
+
+namespace sidestep::campaign {
+
+/// What a pilot is told in one cycle.
+struct Seen {
+  int64_t now_us;
+  const Joints& q_rad;
+  const Joints& qd_radps;
+  const Moving& target;
+  const Eigen::Quaterniond* orientation;  ///< to be held by the tool, or null
+  const Sighting& obstacles;
+};
+
+struct Steering {
+  bool tracking = false;  ///< false: still getting ready
+  Joints velocity_radps = Joints::Zero();
+  double cpu_s = 0.0;
+  const char* message = "";
+};
+
+/// Steers the arm through one trial.
+class Pilot {
+ public:
+  virtual ~Pilot() = default;
+  virtual Steering cycle(const Seen& seen) = 0;
+};
+
+/// `model` steers, its step() called in process; it must outlive the pilot. Null: plain tracking.
+std::unique_ptr<Pilot> make_pilot(const Model* model, const Limits& limits);
+
+/// The controller's model with the limits of a family. Throws std::runtime_error unless it is the benchmark's arm.
+Model model_for(const Model& configured, const Limits& limits);
+
+}  // namespace sidestep::campaign

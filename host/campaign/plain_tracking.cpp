@@ -1,0 +1,60 @@
+#include "host/campaign/plain_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sidestep::campaign {
+namespace {
+
+constexpr double kPosition_per_s2 = 20.0, kVelocity_per_s = 8.94, kLargestSpeed_mps = 1.0;
+constexpr double kLambda = 0.08, kSigma = 0.08;
+
+Joints damped_inverse(const Eigen::Matrix<double, 3, kJoints>& jacobian, const Vector3& tool_mps) {
+  Matrix3 gram = jacobian * jacobian.transpose();
+  const double least = Eigen::SelfAdjointEigenSolver<Matrix3>(gram, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double sigma = std::sqrt(std::max(0.0, least));
+  const double lambda = sigma < kSigma ? kLambda * (1.0 - sigma / kSigma) : 0.0;
+  gram.diagonal().array() += lambda * lambda;
+  return jacobian.transpose() * gram.ldlt().solve(tool_mps);
+}
+
+/// Largest velocity with which a joint can still stop within gap_rad.
+double stoppable(double gap_rad, double acceleration_radps2) {
+  const double step = acceleration_radps2 * kPeriod_s;
+  return std::sqrt(step * step + 2.0 * acceleration_radps2 * std::max(0.0, gap_rad)) - step;
+}
+
+}  // namespace
+
+Joints plain_tracking(const Limits& limits, const Moving& target, const Joints& q_rad, const Joints& qd_radps) {
+  const ArmPose now = pose(q_rad);
+  const auto jacobian = tool_jacobian(now);
+  const Vector3 tool_mps = jacobian * qd_radps;
+  const Vector3 force =
+      kPosition_per_s2 * (target.position_m - now.tool()) + kVelocity_per_s * (target.velocity_mps - tool_mps);
+  Vector3 wish_mps = tool_mps + force * kPeriod_s;
+  wish_mps *= std::min(1.0, kLargestSpeed_mps / std::max(1e-9, wish_mps.norm()));
+
+  Joints velocity = damped_inverse(jacobian, wish_mps);
+  velocity /= std::max(1.0, velocity.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff());
+  for (int i = 0; i < kJoints; ++i) {
+    const double a = limits.acceleration_radps2[i], step = a * kPeriod_s;
+    const double up = stoppable(limits.upper_rad[i] - q_rad[i], a), down = stoppable(q_rad[i] - limits.lower_rad[i], a);
+    velocity[i] = std::clamp(std::clamp(velocity[i], -down, up), qd_radps[i] - step, qd_radps[i] + step);
+  }
+  return velocity;
+}
+
+bool plain_tracking_hits(const Scene& scene) {
+  const Limits limits = scene.family->limits();
+  Joints q_rad = scene.start_rad, qd_radps = Joints::Zero();
+  for (int k = 0; k <= scene.periods; ++k) {
+    const double t_s = k * kPeriod_s;
+    if (clearance_at(scene, pose(q_rad), t_s) < 0.0) return true;
+    qd_radps = plain_tracking(limits, target_at(scene, t_s), q_rad, qd_radps);
+    q_rad += qd_radps * kPeriod_s;
+  }
+  return false;
+}
+
+}  // namespace sidestep::campaign

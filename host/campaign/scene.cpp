@@ -1,0 +1,44 @@
+#include "host/campaign/scene.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sidestep::campaign {
+
+double arrived_within_m(const Family& family) {
+  return family.dodge ? kBack_m : kArrived_m;
+}
+
+Joints witness_rad(const Scene& scene, double t_s) {
+  if (t_s >= scene.witness_s) return scene.goal_rad;
+  const double u = std::max(0.0, t_s / scene.witness_s);
+  return scene.start_rad + (3.0 - 2.0 * u) * u * u * (scene.goal_rad - scene.start_rad);
+}
+
+Joints witness_radps(const Scene& scene, double t_s) {
+  if (t_s >= scene.witness_s || t_s <= 0.0) return Joints::Zero();
+  const double u = t_s / scene.witness_s;
+  return 6.0 * u * (1.0 - u) / scene.witness_s * (scene.goal_rad - scene.start_rad);
+}
+
+Moving target_at(const Scene& scene, double t_s) {
+  if (!scene.family->chase) return {pose(scene.goal_rad).tool(), Vector3::Zero()};
+  const ArmPose witness = pose(witness_rad(scene, t_s));
+  return {witness.tool(), tool_jacobian(witness) * witness_radps(scene, t_s)};
+}
+
+double clearance_at(const Scene& scene, const ArmPose& pose, double t_s) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const SpherePath& sphere : scene.spheres)
+    least_m = std::min(least_m, clearance(pose, sphere.at(t_s).position_m, kSphereRadius_m));
+  return least_m;
+}
+
+double pass_begins_s(const Scene& scene) {
+  return scene.crossing_s - kPassReach_m / scene.family->speed_mps;
+}
+double pass_ends_s(const Scene& scene) {
+  return scene.crossing_s + kPassReach_m / scene.family->speed_mps;
+}
+
+}  // namespace sidestep::campaign

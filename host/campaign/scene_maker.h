@@ -1,0 +1,15 @@
+#pragma once
+
+#include "host/campaign/scene.h"
+
+namespace sidestep::campaign {
+
+/// The scene of a family and a seed; the same one everywhere and always. Draws until the benchmark's rules keep one:
+/// the witness stays 0.05 m clear of every sphere and each comes within 0.25 m of it, and plain tracking hits one.
+Scene make_scene(const Family& family, uint64_t seed);
+
+/// Clearance of the witness that makes a sphere part of a scene.
+constexpr double kWitnessClearance_m = 0.05;
+constexpr double kWitnessNear_m = 0.25;
+
+}  // namespace sidestep::campaign

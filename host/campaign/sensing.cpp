@@ -1,0 +1,43 @@
+#include "host/campaign/sensing.h"
+
+namespace sidestep::campaign {
+namespace {
+
+constexpr double kNoise_m = 0.005, kLoss = 0.10;
+constexpr int64_t kRate_hz = 30, kDelay_us = 40'000;
+
+}  // namespace
+
+Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed) {}
+
+const Sighting& Sensing::look(int64_t now_us, double t_s) {
+  if (!scene_.family->real) {
+    newest_.received_us = now_us;
+    ++newest_.count;
+    newest_.spheres.clear();
+    for (const SpherePath& sphere : scene_.spheres) newest_.spheres.push_back(sphere.at(t_s));
+    return newest_;
+  }
+  for (int64_t at_us; (at_us = next_capture_ * 1'000'000 / kRate_hz) <= now_us; ++next_capture_)
+    capture(at_us, t_s - static_cast<double>(now_us - at_us) / 1e6);
+  while (!on_the_way_.empty() && on_the_way_.front().received_us <= now_us) {
+    on_the_way_.front().count = newest_.count + 1;
+    newest_ = std::move(on_the_way_.front());
+    on_the_way_.pop_front();
+  }
+  return newest_;
+}
+
+void Sensing::capture(int64_t at_us, double t_s) {
+  Sighting sighting;
+  sighting.received_us = at_us + kDelay_us;
+  for (const SpherePath& sphere : scene_.spheres) {
+    Moving seen = sphere.at(t_s);
+    for (int axis = 0; axis < 3; ++axis) seen.position_m[axis] += kNoise_m * random_.normal();
+    sighting.spheres.push_back(seen);
+  }
+  const bool lost = random_.uniform(0.0, 1.0) < kLoss;
+  if (!lost) on_the_way_.push_back(std::move(sighting));
+}
+
+}  // namespace sidestep::campaign

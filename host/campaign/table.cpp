@@ -1,0 +1,160 @@
+#include "host/campaign/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "host/campaign/statistics.h"
+
+namespace sidestep::campaign {
+namespace {
+
+using Value = double Outcome::*;
+using Figure = std::function<double(const Sample&)>;
+
+Figure share(bool (*holds)(const Row&)) {
+  return [=](const Sample& sample) { return percent(sample, holds); };
+}
+
+Figure average(Value value, double unit = 1.0) {
+  return [=](const Sample& sample) { return mean(sample, value) / unit; };
+}
+
+Figure average_success(Value value) {
+  return [=](const Sample& sample) { return mean(successes(sample), value); };
+}
+
+Figure over_witness(Value value, Value of_witness) {
+  return [=](const Sample& sample) { return ratio(sample, value, of_witness); };
+}
+
+Figure most(Value value, double unit = 1.0) {
+  return [=](const Sample& sample) { return largest(sample, value) / unit; };
+}
+
+Figure fewest(Value value, double unit = 1.0) {
+  return [=](const Sample& sample) { return least(sample, value) / unit; };
+}
+
+/// One column: two lines of title, and what stands below.
+struct Column {
+  const char* title;
+  const char* unit;
+  int digits;
+  Figure figure;
+};
+
+using Columns = std::vector<Column>;
+using Line = std::vector<std::string>;
+
+constexpr double kMilli = 1e-3, kMicro = 1e-6, kDegree = M_PI / 180.0;
+
+const Columns& reach_columns() {
+  static const Columns columns{
+      {"success", "%", 1, share(succeeded)},
+      {"contact", "%", 1, share(touched)},
+      {"arrival", "%", 1, share(arrived)},
+      {"clearance", "least, mm", 1, fewest(&Outcome::clearance_m, kMilli)},
+      {"arrival", "s", 2, average_success(&Outcome::arrival_s)},
+      {"arrival", "/ witness", 2, over_witness(&Outcome::arrival_s, &Outcome::witness_arrival_s)},
+      {"joint path", "/ witness", 2, over_witness(&Outcome::path_rad, &Outcome::witness_path_rad)},
+      {"tracking", "RMS, mm", 1, average(&Outcome::error_rms_m, kMilli)},
+      {"on target", "% of time", 1, average(&Outcome::on_target_share, 0.01)},
+  };
+  return columns;
+}
+
+const Columns& dodge_columns() {
+  static const Columns columns{
+      {"contact", "%", 1, share(touched)},
+      {"tool", "RMS, mm", 1, average(&Outcome::error_rms_m, kMilli)},
+      {"tool", "largest, mm", 0, most(&Outcome::error_max_m, kMilli)},
+      {"turn", "RMS, deg", 1, average(&Outcome::turn_rms_rad, kDegree)},
+      {"back", "%", 1, share(arrived)},
+      {"clearance", "least, mm", 1, fewest(&Outcome::clearance_m, kMilli)},
+  };
+  return columns;
+}
+
+const Columns& cpu_columns() {
+  static const Columns columns{
+      {"CPU", "mean, us", 1, average(&Outcome::cpu_mean_s, kMicro)},
+      {"CPU", "worst, us", 0, most(&Outcome::cpu_worst_s, kMicro)},
+  };
+  return columns;
+}
+
+const Columns& smoothness_columns() {
+  static const Columns columns{
+      {"joint margin", "least, rad", 3, fewest(&Outcome::limit_margin_rad)},
+      {"speed", "largest, rad/s", 3, most(&Outcome::speed_radps)},
+      {"acceleration", "largest, rad/s2", 2, most(&Outcome::acceleration_radps2)},
+      {"acceleration", "mean largest", 2, average(&Outcome::acceleration_radps2)},
+      {"jerk", "largest, rad/s3", 0, most(&Outcome::jerk_radps3)},
+      {"jerk", "mean largest", 0, average(&Outcome::jerk_radps3)},
+      {"chatter", "largest, 1/s", 1, most(&Outcome::chatter_per_s)},
+      {"chatter", "mean, 1/s", 2, average(&Outcome::chatter_per_s)},
+  };
+  return columns;
+}
+
+std::string number(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  const std::string text = fmt::format("{:.{}f}", value, digits);
+  const bool zero = text.find_first_not_of("-0.") == std::string::npos;
+  return zero && text[0] == '-' ? text.substr(1) : text;
+}
+
+Line line_of(const Sample& sample, const Columns& columns) {
+  const Row &first = sample.front(), &last = sample.back();
+  Line line{first.law, first.family->name, fmt::format("{}", sample.size()),
+            fmt::format("{}..{}", first.seed, last.seed)};
+  for (const Column& column : columns) line.push_back(number(column.figure(sample), column.digits));
+  return line;
+}
+
+/// Every column as wide as its widest cell; the first two to the left.
+std::string aligned(const std::vector<Line>& lines) {
+  std::vector<size_t> widths(lines.front().size(), 0);
+  for (const Line& line : lines)
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const Line& line : lines) {
+    std::string joined;
+    for (size_t i = 0; i < line.size(); ++i) joined += fmt::format(i < 2 ? "{:<{}}  " : "{:>{}}  ", line[i], widths[i]);
+    joined.erase(joined.find_last_not_of(' ') + 1);
+    text += joined + '\n';
+  }
+  return text;
+}
+
+std::string table(const std::vector<Sample>& samples, const Columns& columns) {
+  if (samples.empty()) return {};
+  std::vector<Line> lines{{"law", "family", "scenes", "seeds"}, {"", "", "", ""}};
+  for (const Column& column : columns) {
+    lines[0].emplace_back(column.title);
+    lines[1].emplace_back(column.unit);
+  }
+  for (const Sample& sample : samples) lines.push_back(line_of(sample, columns));
+  return aligned(lines) + '\n';
+}
+
+}  // namespace
+
+std::string tables(const std::vector<Row>& rows, bool with_cpu) {
+  const auto all = [&](Columns columns) {
+    if (with_cpu) columns.insert(columns.end(), cpu_columns().begin(), cpu_columns().end());
+    return columns;
+  };
+  std::vector<Sample> reaches, dodges;
+  for (Sample& sample : samples(rows)) (sample.front().family->dodge ? dodges : reaches).push_back(std::move(sample));
+  return table(reaches, all(reach_columns())) + table(dodges, all(dodge_columns()));
+}
+
+std::string smoothness_table(const std::vector<Row>& rows) {
+  return table(samples(rows), smoothness_columns());
+}
+
+}  // namespace sidestep::campaign

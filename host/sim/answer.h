@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+namespace sidestep::sim {
+
+/// The values of controller_status_t.
+enum class Mode { kWait = 0, kHold = 1, kTrack = 2, kBrake = 3, kFault = 4 };
+
+/// What the simulator uses of joint_command_t.
+struct Command {
+  int64_t utime = 0;
+  Eigen::VectorXd qd_radps;  ///< any size, any value: not checked yet
+};
+
+/// What the simulator uses of controller_status_t.
+struct Status {
+  Mode mode = Mode::kWait;
+  double cycle_time_s = 0.0;
+  double beta = 0.0;
+  double damping = 0.0;
+  int64_t skipped_cycles = 0;
+  int64_t rejected_messages = 0;
+  std::string message;
+};
+
+/// One message of the controller.
+using Answer = std::variant<Command, Status>;
+
+}  // namespace sidestep::sim

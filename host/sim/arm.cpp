@@ -1,0 +1,177 @@
+#include "host/sim/arm.h"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <kdl_parser/kdl_parser.hpp>
+#include <stdexcept>
+
+#include "host/sim/text_file.h"
+
+namespace sidestep::sim {
+namespace {
+
+// Keeps what urdfdom would print. It goes on after some errors, without the collision shape that it could not read.
+class Complaints : public console_bridge::OutputHandler {
+ public:
+  Complaints() { console_bridge::useOutputHandler(this); }
+  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first.empty()) first = text;
+  }
+
+  std::string first;
+};
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
+  const std::string text = read_text_file(file);
+  Complaints complaints;
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  if (model && model->getRoot() && complaints.first.empty()) return model;
+  throw std::runtime_error(file + ": not a valid URDF: " + complaints.first.substr(0, complaints.first.find('\n')));
+}
+
+bool is_fixed(const urdf::Link& link) {
+  return link.parent_joint && link.parent_joint->type == urdf::Joint::FIXED;
+}
+
+Eigen::Isometry3d isometry(const KDL::Frame& frame) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) pose(row, column) = frame(row, column);
+  }
+  return pose;
+}
+
+KDL::Frame frame_of(const urdf::Pose& pose) {
+  const urdf::Rotation& r = pose.rotation;
+  return {KDL::Rotation::Quaternion(r.x, r.y, r.z, r.w), {pose.position.x, pose.position.y, pose.position.z}};
+}
+
+}  // namespace
+
+class Arm::Builder {
+ public:
+  Builder(Arm& arm, const std::string& file) : arm_(arm), file_(file), model_(parse(file)) {}
+
+  void build(const std::string& base, const std::string& tip) {
+    const urdf::Link* base_link = link_named(base);
+    for (const urdf::Link* link = link_named(tip); link != base_link; link = link->getParent().get()) {
+      if (!link->getParent()) fail(fmt::format("link '{}' is not below link '{}'", tip, base));
+      check(*link->parent_joint);
+      chain_.push_back(link);
+    }
+    model_->root_link_->inertial.reset();  // KDL has no place for it and would warn
+    if (!kdl_parser::treeFromUrdfModel(*model_, tree_)) fail("KDL cannot take it over");
+    KDL::Frame base_from_top;
+    const urdf::Link* top = base_link;
+    for (; is_fixed(*top); top = top->getParent().get()) {
+      base_from_top = base_from_top * segment_of(*top).pose(0.0).Inverse();
+    }
+    add(*top, -1);
+    arm_.bodies_.front().base_from_body = base_from_top;
+    if (arm_.joints_ < 1) fail(fmt::format("no joint between '{}' and '{}'", base, tip));
+    // Every chain link was added, the tip among them.
+    const auto is_tip = [&](const Body& body) { return body.segment.getName() == tip; };
+    const auto tool = std::find_if(arm_.bodies_.begin(), arm_.bodies_.end(), is_tip);
+    arm_.tool_body_ = static_cast<int>(tool - arm_.bodies_.begin());
+  }
+
+  [[noreturn]] void fail(const std::string& complaint) const { throw std::runtime_error(file_ + ": " + complaint); }
+
+ private:
+  const urdf::Link* link_named(const std::string& name) const {
+    const auto link = model_->getLink(name);
+    if (!link) fail(fmt::format("no link '{}'", name));
+    return link.get();
+  }
+
+  const KDL::Segment& segment_of(const urdf::Link& link) const { return tree_.getSegment(link.name)->second.segment; }
+
+  bool on_chain(const urdf::Link& link) const { return std::count(chain_.begin(), chain_.end(), &link) > 0; }
+
+  void add(const urdf::Link& link, int parent) {
+    const int index = static_cast<int>(arm_.bodies_.size());
+    Body body{segment_of(link), parent, -1, parent >= 0 && arm_.bodies_[parent].moving, KDL::Frame::Identity()};
+    if (parent >= 0 && !is_fixed(link)) {
+      body.joint = arm_.joints_++;
+      body.moving = true;
+    }
+    if (arm_.joints_ > kMaxJoints) fail(fmt::format("more than {} joints", kMaxJoints));
+    arm_.bodies_.push_back(body);
+    for (const auto& collision : link.collision_array) add_part(link, *collision, index);
+    for (const auto& child : link.child_links) {
+      if (is_fixed(*child) || on_chain(*child)) add(*child, index);
+    }
+  }
+
+  void check(const urdf::Joint& joint) const {
+    if (joint.type == urdf::Joint::FIXED) return;
+    const bool supported = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+                           joint.type == urdf::Joint::PRISMATIC;
+    if (!supported) fail(fmt::format("joint '{}' is neither revolute, continuous, prismatic nor fixed", joint.name));
+    if (joint.mimic) fail(fmt::format("joint '{}' mimics another: not supported", joint.name));
+    const double axis = std::hypot(joint.axis.x, joint.axis.y, joint.axis.z);
+    if (!(axis > 1e-6 && axis < 1e6)) fail(fmt::format("joint '{}': the axis has no direction", joint.name));
+  }
+
+  void add_part(const urdf::Link& link, const urdf::Collision& collision, int body) {
+    const Solid solid = solid_of(link, collision.geometry.get());
+    if (!solid.size_m.allFinite() || bounding_radius_m(solid) > 100.0 || smallest_size_m(solid) <= 0.0) {
+      fail(fmt::format("link '{}': a collision shape has a size out of range", link.name));
+    }
+    arm_.parts_.push_back({link.name, solid, arm_.bodies_[body].moving});
+    arm_.mounts_.push_back({body, frame_of(collision.origin)});
+  }
+
+  Solid solid_of(const urdf::Link& link, const urdf::Geometry* geometry) const {
+    if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(geometry)) {
+      return {Shape::kSphere, {sphere->radius, 0.0, 0.0}};
+    }
+    if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(geometry)) {
+      return {Shape::kCylinder, {cylinder->radius, cylinder->length, 0.0}};
+    }
+    if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) {
+      return {Shape::kBox, {box->dim.x, box->dim.y, box->dim.z}};
+    }
+    fail(fmt::format("link '{}': a mesh as collision shape is not supported yet", link.name));
+  }
+
+  static double smallest_size_m(const Solid& solid) {
+    const int sizes = solid.shape == Shape::kSphere ? 1 : solid.shape == Shape::kCylinder ? 2 : 3;
+    return solid.size_m.head(sizes).minCoeff();
+  }
+
+  Arm& arm_;
+  std::string file_;
+  KDL::Tree tree_;
+  urdf::ModelInterfaceSharedPtr model_;
+  std::vector<const urdf::Link*> chain_;  // tip first, without the base
+};
+
+Arm::Arm(const std::string& urdf_file, const std::string& base, const std::string& tip) {
+  Builder builder(*this, urdf_file);
+  builder.build(base, tip);
+  place(JointVector::Zero(joints_));
+  bool finite = base_from_tool_.matrix().allFinite();
+  for (const ArmPart& part : parts_) finite = finite && part.base_from_part.matrix().allFinite();
+  if (!finite) builder.fail("a pose is not finite");
+}
+
+void Arm::place(const JointVector& q_rad) {
+  for (size_t i = 1; i < bodies_.size(); ++i) {
+    Body& body = bodies_[i];
+    const double q = body.joint >= 0 ? q_rad[body.joint] : 0.0;
+    body.base_from_body = bodies_[body.parent].base_from_body * body.segment.pose(q);
+  }
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    parts_[i].base_from_part = isometry(bodies_[mounts_[i].body].base_from_body * mounts_[i].body_from_part);
+  }
+  base_from_tool_ = isometry(bodies_[tool_body_].base_from_body);
+}
+
+}  // namespace sidestep::sim

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <kdl/tree.hpp>
+#include <string>
+#include <vector>
+
+#include "host/sim/joints.h"
+#include "host/sim/solid.h"
+
+namespace sidestep::sim {
+
+/// One collision shape of the arm, placed by Arm::place().
+struct ArmPart {
+  std::string link;
+  Solid solid;
+  bool moving = false;  ///< a joint of the chain moves it
+  Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
+};
+
+/// The arm as its URDF describes it: forward kinematics and collision shapes of the links from base to tip and of all
+/// that is rigidly attached to them. Poses are in the frame of the base link.
+class Arm {
+ public:
+  /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1
+  /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere or box.
+  Arm(const std::string& urdf_file, const std::string& base, const std::string& tip);
+
+  int joints() const { return joints_; }
+  void place(const JointVector& q_rad);
+
+  const std::vector<ArmPart>& parts() const { return parts_; }
+  const Eigen::Isometry3d& base_from_tool() const { return base_from_tool_; }
+
+ private:
+  struct Body {
+    KDL::Segment segment;
+    int parent = -1;  ///< index of an earlier body
+    int joint = -1;   ///< index into q, -1: rigidly attached
+    bool moving = false;
+    KDL::Frame base_from_body;
+  };
+  struct Mount {
+    int body;
+    KDL::Frame body_from_part;
+  };
+  class Builder;
+
+  int joints_ = 0;
+  int tool_body_ = 0;
+  std::vector<Body> bodies_;  ///< parents first
+  std::vector<ArmPart> parts_;
+  std::vector<Mount> mounts_;  ///< one per part
+  Eigen::Isometry3d base_from_tool_ = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace sidestep::sim

@@ -1,0 +1,82 @@
+#include "host/sim/live.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "host/sim/clock.h"
+
+namespace sidestep::sim {
+namespace {
+
+const char* name_of(Mode mode) {
+  switch (mode) {
+    case Mode::kWait:
+      return "WAIT";
+    case Mode::kHold:
+      return "HOLD";
+    case Mode::kTrack:
+      return "TRACK";
+    case Mode::kBrake:
+      return "BRAKE";
+    case Mode::kFault:
+      return "FAULT";
+  }
+  return "?";
+}
+
+std::string bar(double done) {
+  constexpr int kWidth = 20;
+  const int filled = static_cast<int>(kWidth * std::clamp(done, 0.0, 1.0));
+  return '[' + std::string(filled, '=') + std::string(kWidth - filled, ' ') + ']';
+}
+
+size_t terminal_columns() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+}  // namespace
+
+Live::Live(bool quiet, bool lockstep) : terminal_(isatty(STDERR_FILENO) != 0) {
+  every_us_ = quiet ? 0 : terminal_ ? 100'000 : lockstep ? 0 : 1'000'000;
+}
+
+void Live::end() {
+  if (shown_ && terminal_) std::fputc('\n', stderr);
+  shown_ = false;
+}
+
+bool Live::due() {
+  const int64_t now_us = monotonic_us();
+  if (every_us_ == 0 || now_us < next_us_) return false;
+  next_us_ = now_us + every_us_;
+  return true;
+}
+
+void Live::show(const std::string& line) {
+  shown_ = true;
+  if (terminal_) {
+    fmt::print(stderr, "\r\x1b[K{}", line.substr(0, terminal_columns() - 1));
+    std::fflush(stderr);
+  } else {
+    fmt::print(stderr, "{}\n", line);
+  }
+}
+
+void Live::waiting(const std::string& for_what) {
+  if (due()) show("waiting for " + for_what);
+}
+
+void Live::running(const Row& row, double duration_s) {
+  if (!due()) return;
+  show(fmt::format("{} {:.2f}/{:.2f} s  target {:.3f} m  clearance {:.3f} m  {}  cycle {:.0f} us",
+                   bar(row.t_s / duration_s), row.t_s, duration_s, row.target_distance_m, row.nearest.clearance_m,
+                   name_of(row.status.mode), row.status.cycle_time_s * 1e6));
+}
+
+}  // namespace sidestep::sim

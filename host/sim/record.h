@@ -1,0 +1,46 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "host/sim/answer.h"
+#include "host/sim/scenario.h"
+#include "host/sim/truth.h"
+
+namespace sidestep::sim {
+
+/// What is known of one control period, at its start.
+struct Row {
+  double t_s = 0.0;
+  JointVector q_rad, qd_radps;  ///< measured
+  JointVector command_radps;    ///< for the coming period
+  Status status;
+  World world;
+  Eigen::Vector3d tool_m = Eigen::Vector3d::Zero();
+  double target_distance_m = 0.0;
+  Nearest nearest;
+  double axis_distance_m = kNothingNear;
+};
+
+/// Fills in what follows from the joints, the world and the truth. Leaves the truth at the row's joints.
+void judge(Row& row, Truth& truth);
+
+/// One line per control period: time, joints, tool, target, distances, obstacles, controller; 17 significant digits.
+/// The columns are named in the first line. cycle_time_s is the only one that differs between two equal lockstep runs.
+class CsvFile {
+ public:
+  /// Throws std::runtime_error when the file cannot be written.
+  CsvFile(const std::string& file, int joints, int obstacles);
+
+  /// The truth must be at the row's joints.
+  void write(const Row& row, const Truth& truth);
+
+  /// Throws std::runtime_error when something could not be written.
+  void close();
+
+ private:
+  std::string file_;
+  std::ofstream out_;
+};
+
+}  // namespace sidestep::sim

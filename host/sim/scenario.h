@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "host/sim/plant.h"
+#include "host/sim/world.h"
+
+namespace sidestep::sim {
+
+struct RobotSource {
+  std::string urdf_file;  ///< as found, see load_scenario
+  std::string base;
+  std::string tip;
+};
+
+/// What must hold at the end of a run; what is absent is not judged.
+struct Expectations {
+  std::optional<double> final_distance_max_m;           ///< tool to target at the end
+  std::optional<double> clearance_min_m;                ///< surface to surface
+  std::optional<double> axis_distance_min_m;            ///< obstacle centre to arm axis
+  std::optional<double> joint_speed_max_radps;          ///< measured
+  std::optional<double> joint_acceleration_max_radps2;  ///< of the commands
+};
+
+/// Figures of the paper, carried for comparison.
+struct Published {
+  std::optional<double> final_distance_m;
+  std::optional<double> axis_distance_m;
+};
+
+struct Scenario {
+  std::string file;
+  std::string title;
+  RobotSource robot;
+  std::string controller_config;  ///< the configuration the controller is meant to have
+  int64_t period_us = 10'000;
+  int periods = 0;  ///< the scenario runs from t = 0 to periods * period
+  JointVector start_rad;
+  PlantSpec plant;
+  World world;  ///< at t = 0
+  Expectations expect;
+  Published published;
+
+  double period_s() const { return static_cast<double>(period_us) / 1e6; }
+  /// Time of the k-th control period.
+  double time_s(int k) const { return static_cast<double>(k * period_us) / 1e6; }
+  double duration_s() const { return time_s(periods); }
+};
+
+/// Reads a scenario. A relative robot.urdf is looked for in the scenario's folder and all above it, then in the working
+/// folder and all above it. Throws std::runtime_error, one line naming file and key, for anything that is missing,
+/// unknown, of the wrong size, not finite or out of range.
+Scenario load_scenario(const std::string& file);
+
+}  // namespace sidestep::sim

@@ -1,0 +1,84 @@
+#include "host/sim/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sidestep::sim {
+namespace {
+
+std::string beside(const std::optional<double>& published_m) {
+  return published_m ? fmt::format("   (paper: {:.4f} m)", *published_m) : "";
+}
+
+void at_most(std::vector<std::string>& broken, const char* name, const std::optional<double>& wanted, double got) {
+  if (wanted && !(got <= *wanted))
+    broken.push_back(fmt::format("{}: wanted at most {}, got {:.6g}", name, *wanted, got));
+}
+
+void at_least(std::vector<std::string>& broken, const char* name, const std::optional<double>& wanted, double got) {
+  if (wanted && !(got >= *wanted))
+    broken.push_back(fmt::format("{}: wanted at least {}, got {:.6g}", name, *wanted, got));
+}
+
+}  // namespace
+
+void Summary::add(const Row& row) {
+  if (rows_++ == 0) skipped_before_ = row.status.skipped_cycles;
+  if (row.nearest.clearance_m < clearance_m_) {
+    clearance_m_ = row.nearest.clearance_m;
+    nearest_ = fmt::format("{} and obstacle {} at {:.2f} s", row.nearest.link,
+                           row.world.obstacles[static_cast<size_t>(row.nearest.obstacle)].id, row.t_s);
+  }
+  axis_distance_m_ = std::min(axis_distance_m_, row.axis_distance_m);
+  final_distance_m_ = row.target_distance_m;
+  joint_speed_radps_ = std::max(joint_speed_radps_, row.qd_radps.cwiseAbs().maxCoeff());
+  cycle_time_total_s_ += row.status.cycle_time_s;
+  cycle_time_max_s_ = std::max(cycle_time_max_s_, row.status.cycle_time_s);
+  last_ = row.status;
+}
+
+void Summary::add(const Command& command) {
+  const int64_t since_us = command.utime - previous_.utime;
+  // After such a pause the plant has stopped by itself.
+  const bool from_rest = previous_.qd_radps.size() != command.qd_radps.size() || since_us > Plant::kWatchdogUs;
+  if (from_rest) previous_.qd_radps = Eigen::VectorXd::Zero(command.qd_radps.size());
+  // Whole periods: in real time the controller's wake-ups jitter.
+  const int64_t periods = from_rest ? 1 : std::max<int64_t>(1, (since_us + period_us_ / 2) / period_us_);
+  const double change_radps = (command.qd_radps - previous_.qd_radps).cwiseAbs().maxCoeff();
+  const double period_s = static_cast<double>(periods * period_us_) / 1e6;
+  joint_acceleration_radps2_ = std::max(joint_acceleration_radps2_, change_radps / period_s);
+  previous_ = command;
+}
+
+std::vector<std::string> Summary::broken(const Expectations& expect) const {
+  std::vector<std::string> broken;
+  at_most(broken, "final_distance_max_m", expect.final_distance_max_m, final_distance_m_);
+  at_least(broken, "clearance_min_m", expect.clearance_min_m, clearance_m_);
+  at_least(broken, "axis_distance_min_m", expect.axis_distance_min_m, axis_distance_m_);
+  at_most(broken, "joint_speed_max_radps", expect.joint_speed_max_radps, joint_speed_radps_);
+  at_most(broken, "joint_acceleration_max_radps2", expect.joint_acceleration_max_radps2, joint_acceleration_radps2_);
+  return broken;
+}
+
+std::string Summary::text(const Scenario& scenario) const {
+  const int64_t skipped = last_.skipped_cycles - skipped_before_;
+  const double mean_us = rows_ > 0 ? cycle_time_total_s_ / rows_ * 1e6 : 0.0;
+  std::string text = scenario.title + '\n';
+  text += fmt::format("  contact                   {}\n", clearance_m_ < 0.0 ? "YES" : "no");
+  text += fmt::format("  min clearance             {:.4f} m   {}\n", clearance_m_, nearest_);
+  text += fmt::format("  min centre to axis        {:.4f} m{}\n", axis_distance_m_,
+                      beside(scenario.published.axis_distance_m));
+  text += fmt::format("  final target distance     {:.6f} m{}\n", final_distance_m_,
+                      beside(scenario.published.final_distance_m));
+  text += fmt::format("  max joint speed           {:.4f} rad/s\n", joint_speed_radps_);
+  text += fmt::format("  max command acceleration  {:.3f} rad/s2\n", joint_acceleration_radps2_);
+  text += fmt::format("  cycles                    {} of {}, {} skipped\n", rows_, scenario.periods + 1, skipped);
+  text += fmt::format("  cycle CPU time            mean {:.1f} us, max {:.1f} us\n", mean_us, cycle_time_max_s_ * 1e6);
+  if (last_.rejected_messages > 0) {
+    text += fmt::format("  the controller rejected   {} messages\n", last_.rejected_messages);
+  }
+  return text;
+}
+
+}  // namespace sidestep::sim

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/sim/record.h"
+
+namespace sidestep::sim {
+
+/// The figures of one run.
+class Summary {
+ public:
+  explicit Summary(int64_t period_us) : period_us_(period_us) {}
+
+  void add(const Row& row);
+
+  /// Every command as it arrives; times are of the controller's clock.
+  void add(const Command& command);
+
+  /// One line per broken expectation: name, wanted, got. Only meaningful for a run that was played to its end.
+  std::vector<std::string> broken(const Expectations& expect) const;
+
+  /// Several lines for people, beside the figures of the paper where there are any.
+  std::string text(const Scenario& scenario) const;
+
+  int rows() const { return rows_; }
+
+ private:
+  int64_t period_us_;
+  int rows_ = 0;
+  double clearance_m_ = kNothingNear;
+  std::string nearest_ = "no obstacle";
+  double axis_distance_m_ = kNothingNear;
+  double final_distance_m_ = 0.0;
+  double joint_speed_radps_ = 0.0;
+  double joint_acceleration_radps2_ = 0.0;
+  double cycle_time_total_s_ = 0.0, cycle_time_max_s_ = 0.0;
+  int64_t skipped_before_ = 0;  ///< when the run began
+  Status last_;
+  Command previous_;
+};
+
+}  // namespace sidestep::sim

@@ -1,0 +1,68 @@
+#include "host/sim/truth.h"
+
+#include <algorithm>
+
+namespace sidestep::sim {
+namespace {
+
+// Half the axis of a part, in its own frame.
+Eigen::Vector3d half_axis_m(const Solid& solid) {
+  if (solid.shape == Shape::kSphere) return Eigen::Vector3d::Zero();
+  int along = 2;
+  double length_m = solid.size_m.y();
+  if (solid.shape == Shape::kBox) length_m = solid.size_m.maxCoeff(&along);
+  return Eigen::Vector3d::Unit(along) * (length_m / 2.0);
+}
+
+double distance_to_axis_m(const ArmPart& part, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d half_m = part.base_from_part.linear() * half_axis_m(part.solid);
+  const Eigen::Vector3d offset_m = point_m - part.base_from_part.translation();
+  const double squared = half_m.squaredNorm();
+  const double along = squared > 0.0 ? std::clamp(offset_m.dot(half_m) / squared, -1.0, 1.0) : 0.0;
+  return (offset_m - along * half_m).norm();
+}
+
+// What the distance of two surfaces can be at least.
+double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
+  return (part.base_from_part.translation() - obstacle.motion.position_m).norm() - bounding_radius_m(part.solid) -
+         bounding_radius_m(obstacle.solid);
+}
+
+}  // namespace
+
+Nearest Truth::nearest(const std::vector<Obstacle>& obstacles) const {
+  Nearest best;
+  std::vector<std::pair<double, const ArmPart*>> candidates;  // most promising first
+  for (size_t i = 0; i < obstacles.size(); ++i) {
+    candidates.clear();
+    for (const ArmPart& part : arm_.parts()) {
+      const double bound_m = lower_bound_m(part, obstacles[i]);
+      if (bound_m < best.clearance_m) candidates.emplace_back(bound_m, &part);
+    }
+    std::sort(candidates.begin(), candidates.end());
+    const Eigen::Isometry3d base_from_obstacle = obstacles[i].motion.base_from_body();
+    for (const auto& [bound_m, part] : candidates) {
+      if (bound_m >= best.clearance_m) break;
+      const double distance_m =
+          signed_distance_m(part->solid, part->base_from_part, obstacles[i].solid, base_from_obstacle);
+      if (distance_m < best.clearance_m) best = {distance_m, static_cast<int>(i), part->link};
+    }
+  }
+  return best;
+}
+
+double Truth::axis_distance_m(const Obstacle& obstacle) const {
+  double least_m = kNothingNear;
+  for (const ArmPart& part : arm_.parts()) {
+    if (part.moving) least_m = std::min(least_m, distance_to_axis_m(part, obstacle.motion.position_m));
+  }
+  return least_m;
+}
+
+double Truth::axis_distance_m(const std::vector<Obstacle>& obstacles) const {
+  double least_m = kNothingNear;
+  for (const Obstacle& obstacle : obstacles) least_m = std::min(least_m, axis_distance_m(obstacle));
+  return least_m;
+}
+
+}  // namespace sidestep::sim

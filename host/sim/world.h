@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/sim/solid.h"
+
+namespace sidestep::sim {
+
+/// Pose of something that moves with constant velocities. Base frame, m, m/s, rad/s.
+struct Motion {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
+
+  Eigen::Isometry3d base_from_body() const { return Eigen::Translation3d(position_m) * orientation; }
+};
+
+struct Obstacle {
+  int32_t id = 0;
+  Solid solid;
+  Motion motion;
+};
+
+struct Target {
+  Motion motion;
+  bool tracks_orientation = false;
+};
+
+/// All that the arm reaches for and keeps clear of, at one instant.
+struct World {
+  Target target;
+  std::vector<Obstacle> obstacles;
+};
+
+/// The world dt_s later; the orientation follows the constant angular velocity exactly.
+World later(const World& now, double dt_s);
+
+}  // namespace sidestep::sim

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""Figures of the paper's three simulations under both laws, and the trade-off over the paper's gains."""
+import argparse
+from pathlib import Path
+
+import plots
+import runs
+import tradeoff
+
+SCENARIOS = runs.ROOT / "host/scenarios"
+
+
+def draw(scenario_file):
+    """Run both laws in lockstep and draw them; the files written."""
+    name = scenario_file.stem
+    both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
+                                                for law in runs.LAWS])
+    written = [plots.page(run, runs.FIGURES / f"{name}-{run.law}.png") for run in both]
+    return [*written, plots.comparison(both, runs.FIGURES / f"{name}-both.png")]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scenario", type=Path, action="append", metavar="FILE",
+                        help="draw this scenario instead, without the trade-off (may be repeated)")
+    chosen = parser.parse_args().scenario
+    for scenario_file in chosen or [SCENARIOS / f"paper-{letter}.yaml" for letter in "abc"]:
+        for file in draw(scenario_file.absolute()):
+            print(f"wrote {runs.shown(file)}", flush=True)
+    if not chosen:
+        print(f"wrote {runs.shown(tradeoff.draw())}")
+
+
+if __name__ == "__main__":
+    runs.main_of(main)

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Play a scenario: Sidestep in real time, then both laws in lockstep for a table and figures.
+
+The real-time run is on the default LCM bus: lcm-spy, watch.py and the send_* scripts can join. The exit code is the
+simulator's: 0 expectations held, 1 not.
+"""
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+import plots
+import runs
+
+
+def contact(run):
+    touching = np.flatnonzero(run.columns["clearance_m"] < 0)
+    return f"yes, at {run.columns['t_s'][touching[0]]:.2f} s" if touching.size else "no"
+
+
+def metres(value_m):
+    return f"{value_m:.4f} m" if np.isfinite(value_m) else "-"
+
+
+def column(run):
+    """One law's figures, in the order of the table's rows."""
+    speeds = plots.family(run.columns, r"qd\d+_radps")
+    return [metres(run.columns["axis_distance_m"].min()), plots.length(run.columns["target_distance_m"][-1]),
+            metres(run.columns["clearance_m"].min()), f"{np.abs(speeds).max():.2f} rad/s", contact(run)]
+
+
+def table(paper, sidestep):
+    published = paper.scenario.get("published") or {}
+    said = [metres(published.get("axis_distance_m", np.nan)),
+            f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", "-", "-", "-"]
+    rows = ["least distance, centre to axis", "target distance at the end", "least clearance, surface to surface",
+            "largest joint speed", "contact"]
+    lines = [("", "published", "paper's law", "sidestep"), *zip(rows, said, column(paper), column(sidestep))]
+    widths = [max(map(len, cells)) for cells in zip(*lines)]
+    return "\n".join(" | ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenario", type=Path, metavar="SCENARIO.yaml")
+    scenario_file = parser.parse_args().scenario.absolute()
+    scenario, name = runs.load_scenario(scenario_file), scenario_file.stem
+
+    print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time", flush=True)
+    code = runs.execute(scenario_file, "sidestep", runs.RECORDS / f"{name}-realtime.csv", lockstep=False)
+    both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
+                                                for law in runs.LAWS])
+    print(f"\nBoth laws, in lockstep:\n{table(*both)}\n", flush=True)
+    written = [plots.page(run, runs.FIGURES / f"{name}-{run.law}.png") for run in both]
+    written.append(plots.comparison(both, runs.FIGURES / f"{name}-both.png"))
+    print("figures: " + " ".join(map(runs.shown, written)))
+    return code
+
+
+if __name__ == "__main__":
+    runs.main_of(main)

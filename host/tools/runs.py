@@ -1,0 +1,197 @@
+"""Runs of build/controller against build/sim, and what they recorded."""
+import csv
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = ROOT / "build"
+FIGURES = BUILD / "figures"
+RECORDS = BUILD / "runs"
+LAWS = {"paper": "the paper's law", "sidestep": "Sidestep"}
+HELD, BROKEN = 0, 1  # exit codes of a simulation that ran to its end: its expectations held or did not
+
+stopping = threading.Event()
+
+
+class RunFailed(Exception):
+    """A process ended otherwise than it should; the text is one line that says how."""
+
+    def __init__(self, text, code=2):
+        super().__init__(text)
+        self.code = code
+
+
+class Run(NamedTuple):
+    name: str       # of the scenario
+    law: str
+    scenario: dict
+    columns: dict   # of the simulator's CSV, arrays
+    code: int       # exit code of the simulator
+
+
+def load(file):
+    """A YAML file as a dict."""
+    try:
+        return yaml.safe_load(Path(file).read_text())
+    except (OSError, yaml.YAMLError) as error:
+        raise RunFailed(f"{file}: {' '.join(str(error).split())}") from None
+
+
+def load_scenario(file):
+    """What the scripts themselves need of a scenario is there; the simulator checks the rest."""
+    scenario = load(file)
+    if not isinstance(scenario, dict):
+        raise RunFailed(f"{file}: not a scenario")
+    for key, kind in (("title", str), ("config", str), ("robot", dict), ("duration_s", (int, float))):
+        if not isinstance(scenario.get(key), kind):
+            raise RunFailed(f"{file}: {key} is missing or not of its kind")
+    return scenario
+
+
+def config_of(scenario):
+    return ROOT / scenario["config"]
+
+
+def read_csv(file):
+    with open(file, newline="") as stream:
+        names, *rows = csv.reader(stream)
+    columns = zip(*(row for row in rows if len(row) == len(names)))
+    return {name: numeric(column) for name, column in zip(names, columns)}
+
+
+def numeric(column):
+    try:
+        return np.array(column, float)
+    except ValueError:
+        return np.array(column)
+
+
+def private_url():
+    """An LCM bus that stays on this machine and that nobody else is likely to use."""
+    return f"udpm://239.255.76.67:{random.randint(20000, 32000)}?ttl=0"
+
+
+def start(command, output):
+    program = Path(command[0])
+    if not program.exists():
+        raise RunFailed(f"{program.relative_to(ROOT)} is missing: run make")
+    # A process group of its own: Ctrl-C reaches this script first, which then stops the processes in order.
+    return subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=output, stderr=output,
+                            cwd=ROOT, process_group=0)
+
+
+def stop(process):
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(3)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+    return process.returncode
+
+
+def ending(code):
+    return f"ended with exit code {code}" if code >= 0 else f"was ended by {signal.Signals(-code).name}"
+
+
+def last_line(log):
+    lines = log.read_text(errors="replace").split("\n") if log.exists() else []
+    return next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
+
+
+def wait(sim, controller, limit_s):
+    deadline = time.monotonic() + limit_s
+    while sim.poll() is None and controller.poll() is None:
+        if stopping.is_set():
+            raise KeyboardInterrupt
+        if time.monotonic() > deadline:
+            raise RunFailed(f"build/sim is not done after {limit_s:.0f} s")
+        time.sleep(0.005)
+
+
+def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True):
+    """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
+
+    In real time (not lockstep) the simulator writes to this terminal. RunFailed when either process fails.
+    """
+    scenario = load_scenario(scenario_file)
+    record.parent.mkdir(parents=True, exist_ok=True)
+    logs = {name: record.with_suffix(f".{name}.log") for name in ("controller", "sim")}
+    common = ["--lockstep"] * lockstep + (["--lcm-url", lcm_url] if lcm_url else [])
+    processes = {}
+    with open(logs["controller"], "w") as controller_log, open(logs["sim"], "w") as sim_log:
+        try:
+            processes["controller"] = start([BUILD / "controller", "--config", config or config_of(scenario), "--law",
+                                             law, *common], controller_log)
+            processes["sim"] = start([BUILD / "sim", "--scenario", scenario_file, "--csv", record, *common],
+                                     sim_log if lockstep else None)
+            wait(processes["sim"], processes["controller"], scenario["duration_s"] * (10 if lockstep else 1) + 60)
+            lost = processes["controller"].poll()
+        finally:
+            codes = {name: stop(process) for name, process in reversed(processes.items())}
+    if lost is None and codes["sim"] not in (HELD, BROKEN):
+        said = f": {last_line(logs['sim'])}" if lockstep else ""
+        raise RunFailed(f"build/sim {ending(codes['sim'])}{said}", codes["sim"])
+    if codes["controller"] or lost is not None:
+        raise RunFailed(f"build/controller {ending(codes['controller'])}: {last_line(logs['controller'])}")
+    return codes["sim"]
+
+
+def lockstep_run(scenario_file, law, record, config=None):
+    """One run on its own LCM bus, as fast as it goes."""
+    code = execute(scenario_file, law, record, config, private_url())
+    return Run(Path(scenario_file).stem, law, load_scenario(scenario_file), read_csv(record), code)
+
+
+def in_parallel(function, jobs, workers=2, done=lambda count, total: None):
+    """[function(*job) for job in jobs], two at a time; `done` hears how far it is. Ctrl-C ends all of them."""
+    with ThreadPoolExecutor(workers) as pool:
+        futures = [pool.submit(function, *job) for job in jobs]
+        try:
+            for count, future in enumerate(as_completed(futures), 1):
+                future.result()
+                done(count, len(jobs))
+        except BaseException:
+            stopping.set()
+            pool.shutdown(cancel_futures=True)
+            stopping.clear()
+            raise
+    return [future.result() for future in futures]
+
+
+def main_of(script):
+    """Run a script's function; Ctrl-C and SIGTERM stop its processes. Exits with the function's return value."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        sys.exit(script())
+    except RunFailed as failure:
+        print(f"\n{Path(sys.argv[0]).name}: {failure}", file=sys.stderr)
+        sys.exit(failure.code if failure.code > 0 else 2)
+    except KeyboardInterrupt:
+        print("\nstopped")
+        sys.exit(130)
+
+
+def progress(text):
+    """A line for in_parallel's `done` that overwrites itself."""
+    def done(count, total):
+        if sys.stdout.isatty() or count == total:
+            bar = "#" * (30 * count // total)
+            print(f"\r{text} [{bar:30}] {count}/{total}", end="\n" if count == total else "", flush=True)
+    return done
+
+
+def shown(path):
+    """A path as the user would type it."""
+    return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)

@@ -1,0 +1,136 @@
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "host/campaign/csv.h"
+#include "tests/support/check.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep::campaign;
+using sidestep::test::message_of;
+using sidestep::test::one_line_with;
+using sidestep::test::replaced;
+using sidestep::test::scratch_file;
+using sidestep::test::scratch_folder;
+using sidestep::test::text_of;
+
+namespace {
+
+struct Answer {
+  int code;
+  std::string out, err;
+};
+
+Answer campaign(const std::string& arguments) {
+  const std::string out = scratch_folder() + "/out", err = scratch_folder() + "/err";
+  const int status = std::system(("build/campaign " + arguments + " >" + out + " 2>" + err).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+}
+
+void bad_arguments_end_with_two(void**) {
+  for (const char* arguments : {"--family slow",
+                                "--count 0",
+                                "--count -3",
+                                "--count x",
+                                "--seed -1",
+                                "--law none",
+                                "--shard 0/4",
+                                "--shard 5/4",
+                                "--shard 1/4x",
+                                "--shard one",
+                                "--shard 1/",
+                                "--jobs 0",
+                                "--config nowhere.yaml",
+                                "--csv /nowhere/at/all.csv --count 1",
+                                "--replay moving",
+                                "--replay slow:1",
+                                "--replay moving:1 --output /nowhere/at/all.yaml",
+                                "--nonsense",
+                                "merge",
+                                "merge /nowhere/at/all.csv",
+                                "merge ."}) {
+    const Answer answer = campaign(arguments);
+    check(answer.code == 2, "%s: code %d", arguments, answer.code);
+    check(answer.out.empty() && !answer.err.empty(), "%s: out '%s', err '%s'", arguments, answer.out.c_str(),
+          answer.err.c_str());
+  }
+}
+
+void a_good_run_ends_with_zero(void**) {
+  const std::string file = scratch_folder() + "/good.csv";
+  const Answer run = campaign("--family moving --count 3 --law plain --quiet --csv " + file);
+  check(run.code == 0 && run.err.empty(), "code %d: %s", run.code, run.err.c_str());
+  const Answer merged = campaign("merge " + file);
+  check(merged.code == 0 && merged.out == run.out, "%s\n%s", merged.out.c_str(), run.out.c_str());
+}
+
+void shards_merge_to_the_table_of_one_run(void**) {
+  const std::string run = "--family erratic --count 7 --law plain --quiet --no-cpu --smoothness",
+                    dir = scratch_folder();
+  const Answer whole = campaign(run + " --jobs 3");
+  campaign(run + " --jobs 1 --shard 1/2 --csv " + dir + "/1.csv");
+  campaign(run + " --jobs 2 --shard 2/2 --csv " + dir + "/2.csv");
+  const Answer merged = campaign("merge --no-cpu --smoothness " + dir + "/2.csv " + dir + "/1.csv");
+  check(merged.code == 0 && merged.out == whole.out, "%s\n%s", merged.out.c_str(), whole.out.c_str());
+}
+
+void a_twin_is_refused(void**) {
+  const std::string file = scratch_folder() + "/twin.csv";
+  campaign("--family moving --count 2 --law plain --quiet --csv " + file);
+  const Answer merged = campaign("merge " + file + " " + file);
+  check(merged.code == 2 && merged.out.empty(), "code %d", merged.code);
+}
+
+void an_interrupted_run_keeps_what_is_done(void**) {
+  const std::string file = scratch_folder() + "/cut.csv", err = scratch_folder() + "/cut.err";
+  const std::string run = "--family moving --count 100000 --law plain --quiet --csv " + file;
+  const int status =
+      std::system(("timeout --preserve-status -s INT 2 build/campaign " + run + " >/dev/null 2>" + err).c_str());
+  check(WIFEXITED(status) && WEXITSTATUS(status) == 130, "status %d", status);
+  check(text_of(err).find("interrupted after") != std::string::npos, "%s", text_of(err).c_str());
+  const std::vector<Row> rows = read_csv(file);
+  check(!rows.empty() && rows.size() < 100'000, "%zu rows", rows.size());
+}
+
+void hostile_files_are_refused_with_one_line(void**) {
+  const std::string file = scratch_folder() + "/whole.csv";
+  write_csv(file, {{&family_named("moving"), "paper", 5, {}}});
+  const std::string whole = text_of(file);
+  const std::string row = whole.substr(whole.find('\n') + 1);
+  const std::string broken[] = {"",
+                                "\n\n",
+                                std::string(100'000, '\0'),
+                                std::string(1'000'000, 'x'),
+                                replaced(whole, "family", "Family"),
+                                replaced(whole, "moving,", "slow,"),
+                                replaced(whole, ",5,", ",-5,"),
+                                replaced(whole, ",5,", ",5.5,"),
+                                replaced(whole, ",5,", ",99999999999999999999,"),
+                                replaced(whole, ",5,", ","),
+                                replaced(whole, ",5,", ",5,0,"),
+                                replaced(whole, ",5,", ",5,x"),
+                                replaced(whole, ",5,", ",5,1e999,"),
+                                whole.substr(0, whole.size() / 2),
+                                whole.substr(0, whole.size() - row.size() / 2),
+                                whole + "\n"};
+  for (const std::string& text : broken) {
+    const std::string bad = scratch_file("bad.csv", text);
+    const std::string message = message_of([&] { read_csv(bad); });
+    check(one_line_with(message, {"bad.csv"}), "%s: %s", text.substr(0, 200).c_str(), message.c_str());
+    check(message.size() < 1'000, "%zu characters", message.size());
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(bad_arguments_end_with_two),
+      cmocka_unit_test(a_good_run_ends_with_zero),
+      cmocka_unit_test(shards_merge_to_the_table_of_one_run),
+      cmocka_unit_test(a_twin_is_refused),
+      cmocka_unit_test(an_interrupted_run_keeps_what_is_done),
+      cmocka_unit_test(hostile_files_are_refused_with_one_line),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,52 @@
+#include "tests/support/allocation_count.h"
+
+#include <cerrno>
+#include <cstddef>
+
+// The allocator of the GNU C library under its own names.
+extern "C" {
+void* __libc_malloc(size_t size);
+void* __libc_calloc(size_t count, size_t size);
+void* __libc_realloc(void* old, size_t size);
+void* __libc_memalign(size_t alignment, size_t size);
+}
+
+namespace {
+thread_local int64_t count = 0;
+}
+
+extern "C" {
+void* malloc(size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+void* calloc(size_t elements, size_t size) {
+  ++count;
+  return __libc_calloc(elements, size);
+}
+void* realloc(void* old, size_t size) {
+  ++count;
+  return __libc_realloc(old, size);
+}
+void* memalign(size_t alignment, size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** result, size_t alignment, size_t size) {
+  ++count;
+  *result = __libc_memalign(alignment, size);
+  return *result ? 0 : ENOMEM;
+}
+}
+
+namespace sidestep::test {
+
+int64_t allocation_count() {
+  return count;
+}
+
+}  // namespace sidestep::test

@@ -1,0 +1,80 @@
+#include "tests/support/closed_loop.h"
+
+#include <cmath>
+
+#include "firmware/io/config.h"
+
+namespace sidestep::test {
+
+Model lwa3_model(const std::string& law) {
+  return load_config("firmware/config/lwa3.yaml", {law, "", "", ""}).model;
+}
+
+ClosedLoop::ClosedLoop(const Model& the_model, const JointVector& start_rad)
+    : model(the_model),
+      commands(model.arm.limits, model.settings.period_s()),
+      arm{0, start_rad, JointVector::Zero(start_rad.size())},
+      obstacles(std::make_unique<ObstacleSet>()) {}
+
+template <typename Message>
+void ClosedLoop::Sent<Message>::send(const Message& now, double now_s) {
+  if (!message) message = std::make_unique<Message>();
+  *message = now;
+  latest = {message.get(), now_s, latest.count + 1};
+}
+
+Inputs ClosedLoop::receive() {
+  ++periods_;
+  arm.utime = static_cast<int64_t>(std::llround(now_s() * 1e6));
+  if (arm_speaks) sent_arm_.send(arm, now_s());
+  if (target_speaks) sent_target_.send(target, now_s());
+  if (obstacles_speak) sent_obstacles_.send(*obstacles, now_s());
+  return {sent_arm_.latest, sent_target_.latest, sent_obstacles_.latest, skipped, stop};
+}
+
+void ClosedLoop::follow(const Result& result) {
+  const bool was_commanding = last.commanding;
+  last = result;
+  state = result.next;
+  if (result.commanding) {
+    if (!was_commanding) commands.begin(arm.position_rad, arm.velocity_radps);
+    commands.feed(result.command.position_rad, result.command.velocity_radps);
+    arm.velocity_radps = result.command.velocity_radps;
+  } else {
+    // After a fault for a contradictory arm nobody knows where the arm is; then the stream may end at once.
+    if (was_commanding && result.report.fault != Fault::kArmStateInconsistent) commands.end();
+    arm.velocity_radps.setZero();
+  }
+  const double period_s = model.settings.period_s();
+  arm.position_rad += arm.velocity_radps * period_s;
+  target.position_m += target.velocity_mps * period_s;
+  for (int i = 0; i < obstacles->count; ++i) {
+    Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(i)];
+    obstacle.capsule = moved(obstacle, period_s);
+  }
+}
+
+void ClosedLoop::cycle() {
+  const Inputs inputs = receive();
+  follow(step(model, state, inputs, now_s()));
+}
+
+void ClosedLoop::run(double duration_s) {
+  for (auto cycles = std::lround(duration_s / model.settings.period_s()); cycles > 0; --cycles) cycle();
+}
+
+bool ClosedLoop::run_until(Mode mode, double limit_s) {
+  for (auto cycles = std::lround(limit_s / model.settings.period_s()); cycles > 0; --cycles) {
+    cycle();
+    if (last.report.mode == mode) return true;
+  }
+  return false;
+}
+
+Obstacle& ClosedLoop::add_sphere(const Vector3& position_m, const Vector3& velocity_mps, double radius_m) {
+  Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(obstacles->count)];
+  obstacle = {obstacles->count++, {position_m, position_m, radius_m}, velocity_mps, Vector3::Zero()};
+  return obstacle;
+}
+
+}  // namespace sidestep::test

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "firmware/control/cycle.h"
+#include "tests/support/command_check.h"
+
+namespace sidestep::test {
+
+/// The LWA3's configuration with a law of choice.
+Model lwa3_model(const std::string& law);
+
+/// A controller, an ideal arm and a world in one process, period by period on a clock of their own. Everything public
+/// may be changed between two cycles. The world moves on whether or not it is reported.
+class ClosedLoop {
+ public:
+  ClosedLoop(const Model& model, const JointVector& start_rad);
+
+  Model model;
+  State state;
+  Result last;
+  CommandCheck commands;  ///< is fed all that a real-time loop would publish
+
+  ArmState arm;  ///< as it is now; follows the commands, rests without them
+  Target target;
+  std::unique_ptr<ObstacleSet> obstacles;
+  bool arm_speaks = true, target_speaks = false, obstacles_speak = true;
+  bool stop = false;
+  int skipped = 0;
+
+  void cycle();
+  void run(double duration_s);
+  /// Runs until the mode is reached, for at most limit_s. Returns whether it was.
+  bool run_until(Mode mode, double limit_s);
+
+  /// The two halves of a cycle around step(), for who wants to watch that alone.
+  Inputs receive();
+  void follow(const Result& result);
+
+  double now_s() const { return static_cast<double>(periods_) * model.settings.period_s(); }
+  Mode mode() const { return last.report.mode; }
+  std::string message() const { return last.report.message; }
+  double speed_radps() const { return arm.velocity_radps.norm(); }
+
+  /// Adds a sphere and returns it.
+  Obstacle& add_sphere(const Vector3& position_m, const Vector3& velocity_mps, double radius_m = 0.05);
+
+ private:
+  template <typename Message>
+  struct Sent {
+    std::unique_ptr<Message> message;
+    Latest<Message> latest;
+    void send(const Message& now, double now_s);
+  };
+
+  int64_t periods_ = 0;
+  Sent<ArmState> sent_arm_;
+  Sent<Target> sent_target_;
+  Sent<ObstacleSet> sent_obstacles_;
+};
+
+}  // namespace sidestep::test

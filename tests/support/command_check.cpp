@@ -1,0 +1,59 @@
+#include "tests/support/command_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sidestep::test {
+namespace {
+
+constexpr double kRounding = 1e-9;
+
+/// How far p is outside the range; 0 inside.
+double outside(double p, double lower, double upper) {
+  return std::max({0.0, lower - p, p - upper});
+}
+
+}  // namespace
+
+void CommandCheck::complain(const char* what, int joint, double value, double bound) {
+  if (!complaint_.empty()) return;
+  char text[200];
+  std::snprintf(text, sizeof text, "command %ld, joint %d: %s %.12g, allowed %.12g", static_cast<long>(fed_), joint + 1,
+                what, value, bound);
+  complaint_ = text;
+}
+
+void CommandCheck::begin(const JointVector& position_rad, const JointVector& velocity_radps) {
+  position_rad_ = position_rad;
+  velocity_radps_ = velocity_radps;
+}
+
+void CommandCheck::feed(const JointVector& position_rad, const JointVector& velocity_radps) {
+  ++fed_;
+  const auto joints = static_cast<int>(limits_.velocity_radps.size());
+  if (position_rad.size() != joints || velocity_radps.size() != joints)
+    return complain("number of joints", 0, static_cast<double>(position_rad.size()), joints);
+  for (int i = 0; i < joints; ++i) {
+    const double p = position_rad[i], v = velocity_radps[i], p_last = position_rad_[i], v_last = velocity_radps_[i];
+    if (!std::isfinite(p) || !std::isfinite(v)) return complain("a value that is not finite", i, p + v, 0);
+    const double v_max = limits_.velocity_radps[i], dv_max = limits_.acceleration_radps2[i] * period_s_;
+    if (std::abs(v) > v_max + kRounding) complain("velocity", i, v, v_max);
+    if (std::abs(v - v_last) > dv_max + kRounding) complain("velocity changes by", i, v - v_last, dv_max);
+    if (std::abs(p - p_last) > v_max * period_s_ + kRounding)
+      complain("position jumps by", i, p - p_last, v_max * period_s_);
+    const double led = p_last + v * period_s_;
+    if (std::abs(p - led) > kRounding) complain("position is not where the velocity leads:", i, p, led);
+    const double out = outside(p, limits_.lower_rad[i], limits_.upper_rad[i]);
+    const double out_last = outside(p_last, limits_.lower_rad[i], limits_.upper_rad[i]);
+    if (out > out_last + kRounding) complain("farther outside the position limits:", i, out, out_last);
+  }
+  begin(position_rad, velocity_radps);
+}
+
+void CommandCheck::end() {
+  for (int i = 0; i < velocity_radps_.size(); ++i)
+    if (velocity_radps_[i] != 0.0) complain("the stream ends in motion:", i, velocity_radps_[i], 0);
+}
+
+}  // namespace sidestep::test

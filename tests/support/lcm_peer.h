@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+#include <sidestep/controller_status_t.hpp>
+#include <sidestep/joint_command_t.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/messages.h"
+
+namespace sidestep::test {
+
+/// A network of this process's own: multicast that stays on this machine, on a port that follows from the process id.
+std::string private_lcm_url();
+
+/// The other end of the controller's wire: sends what an arm and a world would, keeps all that comes back.
+class LcmPeer {
+ public:
+  LcmPeer();
+
+  template <typename Message>
+  void send(const std::string& channel, const Message& message) {
+    send_bytes(channel, encoded(message));
+  }
+  void send_bytes(const std::string& channel, const Bytes& bytes);
+
+  /// Receives until the condition holds, for at most limit_s. Returns whether it does.
+  bool await(const std::function<bool()>& condition, double limit_s);
+  /// Receives for a while.
+  void listen(double duration_s);
+
+  std::vector<joint_command_t> commands;
+  std::vector<controller_status_t> statuses;
+  std::vector<Bytes> command_bytes;
+  std::string order;  ///< one letter for each message in order of arrival: c or s
+
+ private:
+  void on_command(const lcm::ReceiveBuffer* buffer, const std::string& channel, const joint_command_t* message);
+  void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel, const controller_status_t* message);
+
+  lcm::LCM lcm_;
+};
+
+}  // namespace sidestep::test

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "firmware/model/arm.h"
+
+namespace sidestep::test {
+
+/// The paper's arm, from urdf/lwa3.urdf; tests run in the repository's root.
+inline const Arm& lwa3() {
+  static const Arm arm = load_arm("urdf/lwa3.urdf", "base_link", "tool");
+  return arm;
+}
+
+/// Home pose of the paper: the tool at (-0.328, 0, 0.9137) without rotation.
+inline JointVector home_rad() {
+  JointVector q_rad = JointVector::Zero(7);
+  q_rad[1] = M_PI / 2;
+  q_rad[3] = -M_PI / 2;
+  return q_rad;
+}
+
+}  // namespace sidestep::test

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sidestep::test {
+
+/// A program that a test has started. It is killed with this object, by kill_processes(), or when the test binary ends,
+/// whichever comes first.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& arguments);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number);
+
+  /// Exit code, 128 + signal when one ended it, or kStillRunning after limit_s.
+  int wait(double limit_s);
+  static constexpr int kStillRunning = -1;
+
+  /// What it has written to standard output and error so far.
+  std::string output() const;
+
+ private:
+  int id_ = -1;
+  int code_ = kStillRunning;
+  std::string log_file_;
+};
+
+/// Teardown of every test that starts processes: a failed check skips destructors.
+int kill_processes(void** state);
+
+}  // namespace sidestep::test

@@ -1,0 +1,80 @@
+#include "host/campaign/sensing.h"
+
+#include "host/campaign/scene_maker.h"
+#include "tests/support/check.h"
+
+using namespace sidestep::campaign;
+
+namespace {
+
+void exact_sight_is_the_truth_of_every_cycle(void**) {
+  const Scene scene = make_scene(family_named("erratic"), 1);
+  Sensing sensing(scene);
+  for (int k = 0; k < 300; ++k) {
+    const Sighting& seen = sensing.look(1'000'000 + k * kPeriod_us, k * kPeriod_s);
+    check(seen.count == k + 1 && seen.received_us == 1'000'000 + k * kPeriod_us, "cycle %d", k);
+    check(seen.spheres.size() == scene.spheres.size(), "cycle %d", k);
+    for (size_t i = 0; i < seen.spheres.size(); ++i) {
+      check_near(seen.spheres[i].position_m, scene.spheres[i].at(k * kPeriod_s).position_m, 0.0);
+      check_near(seen.spheres[i].velocity_mps, scene.spheres[i].at(k * kPeriod_s).velocity_mps, 0.0);
+    }
+  }
+}
+
+/// A long look at one sphere of a scene of the family real.
+struct Statistics {
+  int received = 0;
+  double noise_sum_m = 0.0, noise_squares_m2 = 0.0;
+  int64_t oldest_us = 0;
+};
+
+Statistics watch(double duration_s) {
+  const Scene scene = make_scene(family_named("real"), 2);
+  Sensing sensing(scene);
+  Statistics statistics;
+  const int64_t start_us = 1'000'000;
+  int64_t count = sensing.look(start_us, 0.0).count;
+  for (int64_t now_us = start_us; now_us < start_us + static_cast<int64_t>(duration_s * 1e6); now_us += kPeriod_us) {
+    const Sighting& seen = sensing.look(now_us, static_cast<double>(now_us - start_us) / 1e6);
+    check(seen.received_us <= now_us, "received %ld us ahead of time", static_cast<long>(seen.received_us - now_us));
+    statistics.oldest_us = std::max(statistics.oldest_us, now_us - seen.received_us);
+    if (seen.count == count) continue;
+    check(seen.count == count + 1, "two at once");
+    count = seen.count;
+    ++statistics.received;
+    const double captured_s = static_cast<double>(seen.received_us - 40'000 - start_us) / 1e6;
+    const Moving truth = scene.spheres[0].at(captured_s);
+    check_near(seen.spheres[0].velocity_mps, truth.velocity_mps, 0.0);
+    const double noise_m = (seen.spheres[0].position_m - truth.position_m).x();
+    statistics.noise_sum_m += noise_m;
+    statistics.noise_squares_m2 += noise_m * noise_m;
+  }
+  return statistics;
+}
+
+void real_sight_is_late_noisy_and_incomplete(void**) {
+  const Statistics seen = watch(200.0);
+  check(std::abs(seen.received - 0.9 * 30 * 200) < 100, "%d received", seen.received);
+  check_near(seen.noise_sum_m / seen.received, 0.0, 3e-4);
+  check_near(std::sqrt(seen.noise_squares_m2 / seen.received), 0.005, 2e-4);
+  check(seen.oldest_us > 60'000 && seen.oldest_us < 300'000, "%ld us", static_cast<long>(seen.oldest_us));
+}
+
+void while_the_world_stands_still_so_does_what_is_seen(void**) {
+  const Scene scene = make_scene(family_named("real"), 2);
+  Sensing sensing(scene);
+  for (int k = 0; k < 100; ++k)
+    check_near(sensing.look(1'000'000 + k * kPeriod_us, 0.0).spheres[0].position_m, scene.spheres[0].at(0.0).position_m,
+               0.03);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(exact_sight_is_the_truth_of_every_cycle),
+      cmocka_unit_test(real_sight_is_late_noisy_and_incomplete),
+      cmocka_unit_test(while_the_world_stands_still_so_does_what_is_seen),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

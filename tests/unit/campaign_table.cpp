@@ -1,0 +1,150 @@
+#include "host/campaign/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "host/campaign/runner.h"
+#include "host/campaign/statistics.h"
+#include "tests/support/check.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep::campaign;
+using sidestep::test::scratch_folder;
+
+namespace {
+
+/// Trials of plain tracking and of nobody in particular, with figures that need all digits.
+std::vector<Row> some_rows() {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  std::vector<Row> rows;
+  for (const char* law : {"sidestep", "paper"}) {
+    for (const Family& family : families()) {
+      for (uint64_t seed = 0; seed < 30; ++seed) {
+        Row row{&family, law, 1'000'000 + seed, {}};
+        row.outcome.clearance_m = any(engine);
+        row.outcome.final_error_m = 0.02 * std::abs(any(engine));
+        row.outcome.arrival_s = 5.0 + any(engine);
+        row.outcome.witness_arrival_s = 1.0 / 3.0;
+        row.outcome.path_rad = std::exp(any(engine));
+        row.outcome.witness_path_rad = seed % 7 == 0 ? Outcome::kNone : 0.1;
+        row.outcome.jerk_radps3 = 1e300 * any(engine);
+        row.outcome.cpu_mean_s = 1e-6 * any(engine);
+        rows.push_back(row);
+      }
+    }
+  }
+  return rows;
+}
+
+std::string all_tables(std::vector<Row> rows) {
+  sort_rows(rows);
+  return tables(rows, true) + smoothness_table(rows);
+}
+
+void a_file_gives_back_the_same_bits(void**) {
+  const std::string file = scratch_folder() + "/trials.csv";
+  const std::vector<Row> rows = some_rows();
+  write_csv(file, rows);
+  const std::vector<Row> again = read_csv(file);
+  check(again.size() == rows.size(), "%zu rows", again.size());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    check(again[i].family == rows[i].family && again[i].law == rows[i].law && again[i].seed == rows[i].seed, "row %zu",
+          i);
+    check(std::memcmp(&again[i].outcome.clearance_m, &rows[i].outcome.clearance_m, sizeof(double)) == 0, "row %zu", i);
+    check(again[i].outcome.jerk_radps3 == rows[i].outcome.jerk_radps3, "row %zu", i);
+    check(std::isnan(again[i].outcome.witness_path_rad) == std::isnan(rows[i].outcome.witness_path_rad), "row %zu", i);
+  }
+}
+
+void shards_together_make_the_table_of_the_whole(void**) {
+  const std::vector<Row> rows = some_rows();
+  std::vector<Row> merged;
+  for (const size_t shard : {2u, 0u, 1u}) {
+    std::vector<Row> part;
+    for (size_t i = shard; i < rows.size(); i += 3) part.push_back(rows[i]);
+    const std::string file = scratch_folder() + "/shard.csv";
+    write_csv(file, part);
+    const std::vector<Row> read = read_csv(file);
+    merged.insert(merged.end(), read.begin(), read.end());
+  }
+  check(all_tables(merged) == all_tables(rows), "\n%s\n%s", all_tables(merged).c_str(), all_tables(rows).c_str());
+}
+
+void a_trial_that_stands_twice_is_named(void**) {
+  std::vector<Row> rows = some_rows();
+  rows.push_back(rows[40]);
+  const std::string message = sidestep::test::message_of([&] { sort_rows(rows); });
+  check(sidestep::test::one_line_with(message, {"fast", "1000010", "sidestep"}), "%s", message.c_str());
+}
+
+Row trial(double clearance_m, double final_error_m, double arrival_s) {
+  Row row{&family_named("moving"), "paper", 0, {}};
+  row.outcome.clearance_m = clearance_m;
+  row.outcome.final_error_m = final_error_m;
+  row.outcome.arrival_s = arrival_s;
+  row.outcome.witness_arrival_s = 2.0;
+  return row;
+}
+
+void figures_of_a_sample(void**) {
+  const Sample sample{trial(0.02, 0.001, 3.0), trial(-0.01, 0.002, 2.0), trial(0.0, 0.009, 5.0),
+                      trial(0.03, 0.010, Outcome::kNone)};
+  check_near(percent(sample, touched), 25.0, 0.0);
+  check_near(percent(sample, arrived), 75.0, 0.0);
+  check_near(percent(sample, succeeded), 50.0, 0.0);
+  check_near(least(sample, &Outcome::clearance_m), -0.01, 0.0);
+  check_near(mean(successes(sample), &Outcome::arrival_s), 4.0, 0.0);
+  check_near(ratio(sample, &Outcome::arrival_s, &Outcome::witness_arrival_s), 2.0, 0.0);
+  check_near(largest(sample, &Outcome::arrival_s), 5.0, 0.0);
+  check(std::isnan(largest(sample, &Outcome::error_rms_m)), "no trial has it");
+}
+
+bool same_but_for_the_time(const Row& a, const Row& b) {
+  const Outcome &x = a.outcome, &y = b.outcome;
+  return a.family == b.family && a.seed == b.seed && x.clearance_m == y.clearance_m &&
+         x.final_error_m == y.final_error_m && x.path_rad == y.path_rad && x.jerk_radps3 == y.jerk_radps3;
+}
+
+void threads_and_shards_change_nothing(void**) {
+  std::vector<Task> tasks, odd, even;
+  for (const char* family : {"moving", "erratic", "dodge@2"})
+    for (uint64_t k = 0; k < 8; ++k) {
+      tasks.push_back({&family_named(family), scene_seed(3, k)});
+      (k % 2 == 0 ? even : odd).push_back(tasks.back());
+    }
+  const std::atomic<bool> stop{false};
+  const Entrant plain{"plain", nullptr};
+  const std::vector<Row> one = run(tasks, plain, 1, true, stop), three = run(tasks, plain, 3, true, stop);
+  check(one.size() == tasks.size(), "%zu rows", one.size());
+  check(std::equal(one.begin(), one.end(), three.begin(), three.end(), same_but_for_the_time), "three threads");
+
+  std::vector<Row> merged = run(odd, plain, 1, true, stop), whole = one;
+  const std::vector<Row> rest = run(even, plain, 2, true, stop);
+  merged.insert(merged.end(), rest.begin(), rest.end());
+  sort_rows(merged);
+  sort_rows(whole);
+  check(std::equal(whole.begin(), whole.end(), merged.begin(), merged.end(), same_but_for_the_time), "two shards");
+}
+
+void a_stopped_run_ends_at_once(void**) {
+  const std::atomic<bool> stop{true};
+  const std::vector<Task> tasks(1'000, Task{&family_named("moving"), 1});
+  check(run(tasks, {"plain", nullptr}, 2, true, stop).empty(), "nothing was begun");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_file_gives_back_the_same_bits),
+      cmocka_unit_test(shards_together_make_the_table_of_the_whole),
+      cmocka_unit_test(a_trial_that_stands_twice_is_named),
+      cmocka_unit_test(figures_of_a_sample),
+      cmocka_unit_test(threads_and_shards_change_nothing),
+      cmocka_unit_test(a_stopped_run_ends_at_once),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,230 @@
+#include "firmware/model/clearance.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "host/sim/solid.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::home_rad;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The distance by FCL, as the simulator judges it.
+double fcl_distance_m(const Capsule& a, const Capsule& b) {
+  const auto solid = [](const Capsule& capsule) {
+    return sim::Solid{sim::Shape::kCapsule, Vector3(capsule.radius_m, (capsule.end - capsule.start).norm(), 0)};
+  };
+  const auto pose = [](const Capsule& capsule) {
+    const Vector3 axis = capsule.end - capsule.start;
+    const Vector3 z = axis.norm() > 0.0 ? axis.normalized() : Vector3(Vector3::UnitZ()), x = z.unitOrthogonal();
+    Eigen::Isometry3d base_from_capsule = Eigen::Isometry3d::Identity();
+    base_from_capsule.linear() << x, z.cross(x), z;
+    base_from_capsule.translation() = 0.5 * (capsule.start + capsule.end);
+    return base_from_capsule;
+  };
+  return sim::signed_distance_m(solid(a), pose(a), solid(b), pose(b));
+}
+
+Obstacle random_obstacle(Random& random, double reach_m) {
+  Obstacle obstacle;
+  obstacle.id = random.index(1000000);
+  const Vector3 centre = random.inside(-reach_m, reach_m);
+  const Vector3 half = random.chance(0.5) ? Vector3(random.inside(-0.3, 0.3)) : Vector3(Vector3::Zero());
+  obstacle.capsule = {centre - half, centre + half, random.uniform(0.01, 0.1)};
+  obstacle.velocity_mps = random.inside(-1, 1);
+  obstacle.angular_velocity_radps = random.inside(-2, 2);
+  return obstacle;
+}
+
+std::unique_ptr<ObstacleSet> random_set(Random& random, int count, double reach_m) {
+  auto set = std::make_unique<ObstacleSet>();
+  set->count = count;
+  for (int i = 0; i < count; ++i) set->obstacles[static_cast<size_t>(i)] = random_obstacle(random, reach_m);
+  return set;
+}
+
+/// Every shape against every obstacle, nothing left out.
+std::vector<NearPair> all_pairs(const Posture& posture, const ObstacleView& view, double horizon_s) {
+  std::vector<NearPair> pairs;
+  for (int o = 0; o < view.set->count; ++o) {
+    const Obstacle& obstacle = view.set->obstacles[static_cast<size_t>(o)];
+    Capsule present = moved(obstacle, view.age_s);
+    present.radius_m += view.growth_m;
+    for (int s = 0; s < static_cast<int>(lwa3().shapes.size()); ++s) {
+      const Capsule link = placed(posture, lwa3().shapes[static_cast<size_t>(s)]);
+      NearPair pair{measure_pair(link, present), predict_approach(link, present, obstacle.velocity_mps, horizon_s)};
+      pair.now.shape = s;
+      pair.now.obstacle = o;
+      pairs.push_back(pair);
+    }
+  }
+  return pairs;
+}
+
+bool moves(const NearPair& pair) {
+  return lwa3().shapes[static_cast<size_t>(pair.now.shape)].body > 0;
+}
+
+double pressing_m(const NearPair& pair) {
+  return std::min(pair.now.distance_m, pair.approach.distance_m);
+}
+
+void distance_of_a_pair_agrees_with_fcl(void**) {
+  Random random(1);
+  int compared = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Capsule a = random_obstacle(random, 0.5).capsule, b = random_obstacle(random, 0.5).capsule;
+    const double distance_m = fcl_distance_m(a, b);
+    const Proximity pair = measure_pair(a, b);
+    check((pair.distance_m > 0) == (distance_m > 0), "trial %d", trial);
+    if (distance_m <= 0) continue;
+    check_near_because(pair.distance_m, distance_m, 1e-6, "trial %d", trial);
+    ++compared;
+  }
+  check(compared > 1000, "%d compared", compared);
+}
+
+void normal_points_from_the_obstacle_to_the_arm(void**) {
+  Random random(2);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Capsule link = random_obstacle(random, 0.5).capsule, obstacle = random_obstacle(random, 0.5).capsule;
+    const Proximity pair = measure_pair(link, obstacle);
+    check_near_because(pair.on_obstacle + pair.axis_distance_m * pair.normal, pair.on_arm, 1e-9, "trial %d", trial);
+    check_near_because(pair.distance_m, pair.axis_distance_m - link.radius_m - obstacle.radius_m, 1e-15, "trial %d",
+                       trial);
+  }
+}
+
+void normal_is_a_unit_vector_across_the_link_where_the_axes_meet(void**) {
+  const Capsule link{Vector3(0, 0, 0), Vector3(1, 0, 0), 0.05}, point{Vector3(0.5, 0, 0), Vector3(0.5, 0, 0), 0.05};
+  const Proximity on_axis = measure_pair(link, point);
+  check_near(on_axis.normal.norm(), 1.0, 1e-12);
+  check_near(on_axis.normal.dot(Vector3::UnitX()), 0.0, 1e-12);
+  check_near(on_axis.distance_m, -0.1, 1e-12);
+  check_near(measure_pair(point, point).normal.norm(), 1.0, 1e-12);
+}
+
+void nearest_is_the_true_minimum_among_many(void**) {
+  Random random(3);
+  for (int trial = 0; trial < 300; ++trial) {
+    const auto set = random_set(random, 1 + random.index(60), trial % 3 ? 1.5 : 8.0);
+    const ObstacleView view{set.get(), random.uniform(0, 0.3), random.chance(0.3) ? random.uniform(0, 0.5) : 0.0};
+    const Posture posture = forward(lwa3(), random.posture(lwa3()));
+    const Reach reach{random.uniform(0, 0.5), random.uniform(0, 1)};
+    const Clearance clearance = measure_clearance(lwa3(), posture, view, reach);
+    double least = kInfinity, least_axis = kInfinity;
+    for (const NearPair& pair : all_pairs(posture, view, reach.horizon_s)) {
+      least = std::min(least, pair.now.distance_m);
+      if (moves(pair)) least_axis = std::min(least_axis, pair.now.axis_distance_m);
+    }
+    check_near_because(clearance.nearest.distance_m, least, 0, "trial %d", trial);
+    check_near_because(clearance.nearest_axis.axis_distance_m, least_axis, 0, "trial %d", trial);
+  }
+}
+
+void near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many(void**) {
+  Random random(4);
+  int overfull = 0, partly = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto set = random_set(random, 1 + random.index(trial % 2 ? 300 : 20), 1.2);
+    const ObstacleView view{set.get(), 0.05, 0.0};
+    const Posture posture = forward(lwa3(), random.posture(lwa3()));
+    const Reach reach{random.uniform(0.05, 0.5), random.uniform(0, 1)};
+    const Clearance clearance = measure_clearance(lwa3(), posture, view, reach);
+    std::vector<double> expected, actual;
+    for (const NearPair& pair : all_pairs(posture, view, reach.horizon_s))
+      if (moves(pair) && pressing_m(pair) < reach.range_m) expected.push_back(pressing_m(pair));
+    for (int i = 0; i < clearance.near_count; ++i) actual.push_back(pressing_m(clearance.near[static_cast<size_t>(i)]));
+    std::sort(expected.begin(), expected.end());
+    std::sort(actual.begin(), actual.end());
+    (expected.size() > kMaxNear ? overfull : partly) += !expected.empty();
+    if (expected.size() > kMaxNear) expected.resize(kMaxNear);
+    check(actual == expected, "trial %d: %zu near pairs, expected %zu", trial, actual.size(), expected.size());
+  }
+  check(overfull > 5 && partly > 5, "%d overfull, %d partly filled", overfull, partly);
+}
+
+void age_moves_the_obstacles_and_growth_swells_them(void**) {
+  auto set = std::make_unique<ObstacleSet>();
+  set->count = 1;
+  set->obstacles[0].id = 7;
+  set->obstacles[0].capsule = {Vector3(0, 0, 2.0), Vector3(0, 0, 2.0), 0.05};
+  set->obstacles[0].velocity_mps = Vector3(0, 0, -0.5);
+  JointVector upright = JointVector::Zero(7);
+  const Posture posture = forward(lwa3(), upright);
+  const double top_m = posture.tool_position.z();
+  const auto clearance_m = [&](double age_s, double growth_m) {
+    return measure_clearance(lwa3(), posture, {set.get(), age_s, growth_m}, {0.4, 0.0}).nearest.distance_m;
+  };
+  check_near(clearance_m(0.0, 0.0), 2.0 - top_m - 0.1, 1e-12);
+  check_near(clearance_m(0.2, 0.0), 2.0 - top_m - 0.1 - 0.1, 1e-12);
+  check_near(clearance_m(0.2, 0.3), 2.0 - top_m - 0.1 - 0.1 - 0.3, 1e-12);
+}
+
+void the_base_column_counts_for_the_surface_but_not_for_the_axis(void**) {
+  auto set = std::make_unique<ObstacleSet>();
+  set->count = 1;
+  set->obstacles[0].capsule = {Vector3(0.2, 0, 0.1), Vector3(0.2, 0, 0.1), 0.05};
+  const Clearance clearance = measure_clearance(lwa3(), forward(lwa3(), home_rad()), {set.get(), 0, 0}, {0.4, 0.0});
+  check_near(clearance.nearest.distance_m, 0.1, 1e-12);
+  assert_int_equal(lwa3().shapes[static_cast<size_t>(clearance.nearest.shape)].body, 0);
+  assert_true(lwa3().shapes[static_cast<size_t>(clearance.nearest_axis.shape)].body > 0);
+  check_near(clearance.nearest_axis.axis_distance_m, std::hypot(0.2, 0.2), 1e-12);
+}
+
+void nothing_is_near_without_obstacles(void**) {
+  const auto empty = std::make_unique<ObstacleSet>();
+  for (const ObstacleView& view : {ObstacleView{}, ObstacleView{empty.get(), 0.1, 0.1}}) {
+    const Clearance clearance = measure_clearance(lwa3(), forward(lwa3(), home_rad()), view, {0.4, 1.0});
+    assert_int_equal(clearance.nearest.shape, -1);
+    assert_int_equal(clearance.nearest_axis.shape, -1);
+    assert_int_equal(clearance.near_count, 0);
+    check_near(clearance.nearest.distance_m, kInfinity, 0);
+  }
+}
+
+void closest_approach_is_the_least_distance_along_the_way(void**) {
+  Random random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Obstacle link = random_obstacle(random, 0.5), obstacle = random_obstacle(random, 1.0);
+    const double horizon_s = random.uniform(0.1, 1.0);
+    const Approach approach = predict_approach(link.capsule, obstacle.capsule, obstacle.velocity_mps, horizon_s);
+    const Vector3 point = nearest_on_axes(link.capsule, obstacle.capsule).b;
+    const double radii_m = link.capsule.radius_m + obstacle.capsule.radius_m;
+    const auto distance_m = [&](double time_s) {
+      const Vector3 p = point + time_s * obstacle.velocity_mps;
+      return (p - nearest_on_segment(link.capsule.start, link.capsule.end, p)).norm() - radii_m;
+    };
+    check(approach.time_s >= 0 && approach.time_s <= horizon_s + 1e-12, "trial %d: time %g", trial, approach.time_s);
+    check_near_because(distance_m(approach.time_s), approach.distance_m, 1e-9, "trial %d", trial);
+    for (int i = 0; i <= 50; ++i)
+      check(distance_m(i * horizon_s / 50) >= approach.distance_m - 1e-9, "trial %d, sample %d", trial, i);
+    check_near_because(approach.normal.norm(), 1.0, 1e-9, "trial %d", trial);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(distance_of_a_pair_agrees_with_fcl),
+      cmocka_unit_test(normal_points_from_the_obstacle_to_the_arm),
+      cmocka_unit_test(normal_is_a_unit_vector_across_the_link_where_the_axes_meet),
+      cmocka_unit_test(nearest_is_the_true_minimum_among_many),
+      cmocka_unit_test(near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many),
+      cmocka_unit_test(age_moves_the_obstacles_and_growth_swells_them),
+      cmocka_unit_test(the_base_column_counts_for_the_surface_but_not_for_the_axis),
+      cmocka_unit_test(nothing_is_near_without_obstacles),
+      cmocka_unit_test(closest_approach_is_the_least_distance_along_the_way),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,87 @@
+#include <time.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::ClosedLoop;
+using test::Random;
+
+namespace {
+
+/// CPU time of this thread: what other processes take does not count.
+double cpu_s() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Times {
+  double median_s, p99_s, worst_s;
+};
+
+/// A target that runs around and spheres that bounce about in the arm's reach.
+Times measure(const char* law, int obstacles, int cycles, bool with_orientation) {
+  Random random(1);
+  ClosedLoop loop(test::lwa3_model(law), test::home_rad());
+  loop.target_speaks = true;
+  loop.target.tracks_orientation = with_orientation;
+  for (int i = 0; i < obstacles; ++i)
+    loop.add_sphere(random.inside(-0.8, 0.8) + Vector3(0, 0, 0.6), random.inside(-0.3, 0.3));
+  std::vector<double> times;
+  while (static_cast<int>(times.size()) < cycles) {
+    const double t = loop.now_s();
+    loop.target.position_m = Vector3(0.4 * std::cos(0.7 * t), 0.4 * std::sin(0.7 * t), 0.7 + 0.2 * std::sin(t));
+    for (int i = 0; i < obstacles; ++i) {
+      Obstacle& obstacle = loop.obstacles->obstacles[static_cast<size_t>(i)];
+      const Vector3 from_middle = obstacle.capsule.start - Vector3(0, 0, 0.6);
+      for (int axis = 0; axis < 3; ++axis)
+        if (from_middle[axis] * obstacle.velocity_mps[axis] > 0 && std::abs(from_middle[axis]) > 0.8)
+          obstacle.velocity_mps[axis] *= -1;
+    }
+    const Inputs inputs = loop.receive();
+    const double start_s = cpu_s();
+    const Result result = step(loop.model, loop.state, inputs, loop.now_s());
+    const double time_s = cpu_s() - start_s;
+    if (result.report.mode == Mode::kTrack) times.push_back(time_s);
+    loop.follow(result);
+    check(loop.now_s() < 2 + 0.01 * cycles, "%s: %zu cycles tracked", law, times.size());
+  }
+  std::sort(times.begin(), times.end());
+  const Times found{times[times.size() / 2], times[times.size() * 99 / 100], times.back()};
+  print_message("%-8s %4d obstacles%s: median %6.1f us, 99 %% below %6.1f us, worst %6.1f us\n", law, obstacles,
+                with_orientation ? ", pose" : "      ", found.median_s * 1e6, found.p99_s * 1e6, found.worst_s * 1e6);
+  return found;
+}
+
+void a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period(void**) {
+  for (const char* law : {"paper", "sidestep"}) {
+    for (const bool with_orientation : {false, true}) {
+      const Times times = measure(law, 50, 3000, with_orientation);
+      check(times.median_s < 500e-6, "%s: median %g s", law, times.median_s);
+      check(times.p99_s < 2e-3, "%s: p99 %g s", law, times.p99_s);
+    }
+  }
+}
+
+void even_as_many_obstacles_as_a_message_holds_fit_into_the_period(void**) {
+  for (const char* law : {"paper", "sidestep"}) {
+    const Times times = measure(law, kMaxObstacles, 200, false);
+    check(times.median_s < 10e-3, "%s: median %g s", law, times.median_s);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period),
+      cmocka_unit_test(even_as_many_obstacles_as_a_message_holds_fit_into_the_period),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,75 @@
+#include "firmware/model/obstacle.h"
+
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::Random;
+
+namespace {
+
+void a_moving_sphere_goes_straight(void**) {
+  Obstacle sphere;
+  sphere.capsule = {Vector3(1, 2, 3), Vector3(1, 2, 3), 0.1};
+  sphere.velocity_mps = Vector3(0.5, -1, 2);
+  sphere.angular_velocity_radps = Vector3(9, 9, 9);
+  const Capsule later = moved(sphere, 0.5);
+  check_near(later.start, Vector3(1.25, 1.5, 4), 1e-15);
+  check_near(later.end, Vector3(1.25, 1.5, 4), 1e-15);
+  check_near(later.radius_m, 0.1, 0);
+}
+
+void a_quarter_turn_carries_the_ends_around_the_middle(void**) {
+  Obstacle bar;
+  bar.capsule = {Vector3(1, 0, 0), Vector3(3, 0, 0), 0.1};
+  bar.velocity_mps = Vector3(0, 0, 1);
+  bar.angular_velocity_radps = Vector3(0, 0, M_PI);
+  const Capsule later = moved(bar, 0.5);
+  check_near(later.start, Vector3(2, -1, 0.5), 1e-15);
+  check_near(later.end, Vector3(2, 1, 0.5), 1e-15);
+}
+
+/// The end points obey p' = v + w x (p - centre); small steps of it must lead to the same place.
+void motion_agrees_with_small_steps(void**) {
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    Obstacle bar;
+    bar.capsule = {random.inside(-1, 1), random.inside(-1, 1), 0.1};
+    bar.velocity_mps = random.inside(-1, 1);
+    bar.angular_velocity_radps = random.inside(-2, 2);
+    const double duration_s = random.uniform(-0.5, 0.5);
+    const int steps = 2000;
+    const double dt_s = duration_s / steps;
+    Vector3 centre = 0.5 * (bar.capsule.start + bar.capsule.end), half = bar.capsule.end - centre;
+    for (int i = 0; i < steps; ++i) {
+      const Vector3 middle = half + 0.5 * dt_s * bar.angular_velocity_radps.cross(half);
+      half += dt_s * bar.angular_velocity_radps.cross(middle);
+      centre += dt_s * bar.velocity_mps;
+    }
+    const Capsule later = moved(bar, duration_s);
+    check_near_because(later.end, centre + half, 1e-5, "trial %d", trial);
+    check_near_because(later.start, centre - half, 1e-5, "trial %d", trial);
+  }
+}
+
+void no_time_changes_nothing(void**) {
+  Random random(2);
+  Obstacle bar;
+  bar.capsule = {random.inside(-1, 1), random.inside(-1, 1), 0.1};
+  bar.velocity_mps = random.inside(-1, 1);
+  bar.angular_velocity_radps = random.inside(-2, 2);
+  check_near(moved(bar, 0.0).start, bar.capsule.start, 0);
+  check_near(moved(bar, 0.0).end, bar.capsule.end, 0);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_moving_sphere_goes_straight),
+      cmocka_unit_test(a_quarter_turn_carries_the_ends_around_the_middle),
+      cmocka_unit_test(motion_agrees_with_small_steps),
+      cmocka_unit_test(no_time_changes_nothing),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,151 @@
+#include "host/sim/record.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "host/sim/summary.h"
+#include "tests/support/check.h"
+
+using namespace sidestep::sim;
+using sidestep::test::message_of;
+using sidestep::test::one_line_with;
+
+namespace {
+
+Row row_at(double t_s, double clearance_m = 0.1, double target_distance_m = 0.5) {
+  Row row;
+  row.t_s = t_s;
+  row.q_rad = row.qd_radps = row.command_radps = JointVector::Constant(7, 0.1);
+  row.world.obstacles.resize(2);
+  for (Obstacle& obstacle : row.world.obstacles) obstacle.solid.size_m.x() = 0.05;
+  row.world.obstacles[1].id = 42;
+  row.world.obstacles[1].motion.position_m = {1, 0, 1};
+  row.nearest = {clearance_m, 1, "forearm"};
+  row.axis_distance_m = clearance_m + 0.1;
+  row.target_distance_m = target_distance_m;
+  row.status.mode = Mode::kTrack;
+  return row;
+}
+
+Command command(int64_t utime, double radps) {
+  return {utime, Eigen::VectorXd::Constant(7, radps)};
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
+  const auto file = std::filesystem::temp_directory_path() / ("sim_record." + std::to_string(getpid()) + ".csv");
+  Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
+  Row row = row_at(1.0 / 3.0);
+  row.q_rad[1] = 0.1 + 1e-17;
+  judge(row, truth);
+  {
+    CsvFile csv(file.string(), 7, 2);
+    csv.write(row, truth);
+    csv.close();
+  }
+  std::ifstream in(file);
+  std::string header, values, rest;
+  std::getline(in, header), std::getline(in, values);
+  check(!std::getline(in, rest), "more than two lines");
+  std::filesystem::remove(file);
+  const auto names = split(header), cells = split(values);
+  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 4);
+  assert_int_equal(cells.size(), names.size());
+  const auto value = [&](const std::string& name) {
+    return std::stod(cells[static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+  };
+  check_near(value("t_s"), row.t_s, 0);
+  check_near(value("q2_rad"), row.q_rad[1], 0);
+  check_near(value("tool_z_m"), row.tool_m.z(), 0);
+  check_near(value("o2_x_m"), 1, 0);
+  check_near(value("clearance_m"), std::min(value("o1_clearance_m"), value("o2_clearance_m")), 0);
+  check_near(value("axis_distance_m"), std::min(value("o1_axis_distance_m"), value("o2_axis_distance_m")), 0);
+  check_near(value("mode"), 2, 0);
+}
+
+void a_csv_file_that_cannot_be_written_is_an_error_in_one_line(void**) {
+  assert_true(
+      one_line_with(message_of([] { CsvFile("no/such/folder/a.csv", 7, 0); }), {"no/such/folder/a.csv: cannot"}));
+  assert_true(one_line_with(message_of([] { CsvFile("/dev/full", 7, 0).close(); }), {"/dev/full: "}));
+}
+
+void expectations_are_judged_over_the_whole_run(void**) {
+  Summary summary(10'000);
+  summary.add(row_at(0, 0.1, 0.5));
+  summary.add(row_at(0.01, -0.02, 0.4));
+  summary.add(row_at(0.02, 0.3, 0.001));
+  Expectations expect;
+  expect.final_distance_max_m = 0.001;
+  expect.clearance_min_m = -0.02;
+  expect.axis_distance_min_m = 0.08;
+  expect.joint_speed_max_radps = 0.1;
+  assert_int_equal(summary.broken(expect).size(), 0);
+  assert_int_equal(summary.broken({}).size(), 0);
+  expect.final_distance_max_m = 0.0005;
+  expect.clearance_min_m = 0;
+  expect.joint_speed_max_radps = 0.05;
+  const auto broken = summary.broken(expect);
+  assert_int_equal(broken.size(), 3);
+  assert_string_equal(broken[0].c_str(), "final_distance_max_m: wanted at most 0.0005, got 0.001");
+  assert_string_equal(broken[1].c_str(), "clearance_min_m: wanted at least 0, got -0.02");
+}
+
+void a_run_without_figures_keeps_no_expectation(void**) {
+  Row row = row_at(0);
+  row.nearest.clearance_m = row.target_distance_m = std::nan("");
+  Summary summary(10'000);
+  summary.add(row);
+  Expectations expect;
+  expect.final_distance_max_m = 1;
+  assert_int_equal(summary.broken(expect).size(), 1);
+}
+
+void acceleration_is_taken_over_whole_periods_of_the_commands(void**) {
+  const auto most = [](const std::vector<Command>& commands) {
+    Summary summary(10'000);
+    for (const Command& one : commands) summary.add(one);
+    Expectations expect;
+    expect.joint_acceleration_max_radps2 = -1;
+    return std::stod(summary.broken(expect).at(0).substr(
+        std::string("joint_acceleration_max_radps2: wanted at most -1, got").size()));
+  };
+  check_near(most({command(1'000'000, 0.05), command(1'010'000, 0.1)}), 5, 1e-9);
+  check_near(most({command(1'000'000, 0), command(1'009'000, 0.1)}), 10, 1e-9);     // jitter
+  check_near(most({command(1'000'000, 0), command(1'020'500, 0.1)}), 5, 1e-9);      // one skipped
+  check_near(most({command(1'000'000, 0), command(1'000'000, 0.1)}), 10, 1e-9);     // two controllers
+  check_near(most({command(1'000'000, 0.1), command(1'200'000, -0.3)}), 30, 1e-9);  // the plant had stopped
+}
+
+void the_summary_names_what_came_closest(void**) {
+  Summary summary(10'000);
+  Scenario scenario;
+  scenario.title = "a title";
+  scenario.published.axis_distance_m = 0.2154;
+  summary.add(row_at(0.5, -0.01));
+  const std::string text = summary.text(scenario);
+  for (const char* part : {"a title", "YES", "-0.0100 m", "forearm and obstacle 42 at 0.50 s", "(paper: 0.2154 m)"}) {
+    check(text.find(part) != std::string::npos, "no '%s' in: %s", part, text.c_str());
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_csv_row_has_a_value_for_every_column_and_loses_no_bit),
+      cmocka_unit_test(a_csv_file_that_cannot_be_written_is_an_error_in_one_line),
+      cmocka_unit_test(expectations_are_judged_over_the_whole_run),
+      cmocka_unit_test(a_run_without_figures_keeps_no_expectation),
+      cmocka_unit_test(acceleration_is_taken_over_whole_periods_of_the_commands),
+      cmocka_unit_test(the_summary_names_what_came_closest),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

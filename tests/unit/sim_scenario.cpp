@@ -1,0 +1,214 @@
+#include "host/sim/scenario.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/check.h"
+
+using namespace sidestep::sim;
+using Eigen::Vector3d;
+using sidestep::test::message_of;
+using sidestep::test::one_line_with;
+
+namespace {
+
+const std::string kGood = R"(title: two obstacles and a servo
+robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}
+config: firmware/config/lwa3.yaml
+duration_s: 1.5
+rate_hz: 200
+start_rad: [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+plant: {kind: servo, lag_s: 0.03, latency_s: 0.01, velocity_limit_radps: 2, acceleration_limit_radps2: [1, 2, 3, 4, 5, 6, 7]}
+target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0, 0], angular_velocity_radps: [0, 0, 1]}
+obstacles:
+  - {id: 4, shape: box, edges_m: [0.1, 0.2, 0.3], position_m: [0, 0, 1], velocity_mps: [0, 0, 0], quaternion: [1, 0, 0, 0]}
+  - {id: 9, shape: capsule, radius_m: 0.1, length_m: 0.5, position_m: [0, 1, 1], velocity_mps: [0, 0, -1]}
+expect: {final_distance_max_m: 0.01, clearance_min_m: 0.02}
+published: {axis_distance_m: 0.2}
+)";
+
+/// Loads the text as the scenario `name` from a folder of its own.
+Scenario load(const std::string& text, const std::string& name = "a.yaml") {
+  const auto folder = std::filesystem::temp_directory_path() / ("sim_scenario." + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / name) << text;
+  struct Cleanup {
+    std::filesystem::path folder;
+    ~Cleanup() { std::filesystem::remove_all(folder); }
+  } const cleanup{folder};
+  return load_scenario((folder / name).string());
+}
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = kGood;
+  const size_t at = text.find(from);
+  return at == std::string::npos ? "(the change does not apply)" : text.replace(at, from.size(), to);
+}
+
+void a_complete_scenario_arrives_value_by_value(void**) {
+  const Scenario s = load(kGood);
+  assert_string_equal(s.title.c_str(), "two obstacles and a servo");
+  assert_string_equal(s.controller_config.c_str(), "firmware/config/lwa3.yaml");
+  assert_int_equal(s.period_us, 5000);
+  assert_int_equal(s.periods, 300);
+  check_near(s.duration_s(), 1.5, 0);
+  assert_int_equal(s.start_rad.size(), 7);
+  check_near(s.start_rad[6], 0.6, 0);
+  assert_true(s.plant.kind == PlantSpec::Kind::kServo);
+  check_near(s.plant.lag_s, 0.03, 0);
+  check_near(s.plant.latency_s, 0.01, 0);
+  check_near(s.plant.velocity_limit_radps, JointVector::Constant(7, 2), 0);
+  check_near(s.plant.acceleration_limit_radps2[6], 7, 0);
+  assert_true(s.world.target.tracks_orientation);
+  check_near(s.world.target.motion.position_m, Vector3d(1, 2, 3), 0);
+  check_near(s.world.target.motion.orientation.x(), 1, 0);
+  assert_int_equal(s.world.obstacles.size(), 2);
+  const Obstacle &box = s.world.obstacles[0], &capsule = s.world.obstacles[1];
+  assert_int_equal(box.id, 4);
+  check_near(box.solid.size_m, Vector3d(0.1, 0.2, 0.3), 0);
+  assert_true(capsule.solid.shape == Shape::kCapsule);
+  check_near(capsule.solid.size_m, Vector3d(0.1, 0.5, 0), 0);
+  check_near(capsule.motion.velocity_mps, Vector3d(0, 0, -1), 0);
+  check_near(*s.expect.clearance_min_m, 0.02, 0);
+  assert_false(s.expect.axis_distance_min_m.has_value());
+  check_near(*s.published.axis_distance_m, 0.2, 0);
+}
+
+struct Mistake {
+  const char* from;
+  const char* to;
+  const char* key;        // that the error names
+  const char* complaint;  // part of the rest
+};
+
+const Mistake kMistakes[] = {
+    {"title: two", "titel: two", "title", "missing"},
+    {"config: firmware", "seed: 3\nconfig: firmware", "seed", "unknown key"},
+    {"config: firmware", "title: again\nconfig: firmware", "title", "given twice"},
+    {"title: two obstacles and a servo", "title: [a, b]", "title", "text"},
+    {"urdf: urdf/lwa3.urdf", "urdf: urdf/none.urdf", "robot.urdf", "no file 'urdf/none.urdf'"},
+    {"tip: tool", "tip: tool, colour: red", "robot.colour", "unknown key"},
+    {"duration_s: 1.5", "duration_s: .nan", "duration_s", "finite"},
+    {"duration_s: 1.5", "duration_s: -1", "duration_s", "from 0"},
+    {"duration_s: 1.5", "duration_s: 0", "duration_s", "whole number of periods"},
+    {"duration_s: 1.5", "duration_s: 1.503", "duration_s", "whole number of periods"},
+    {"duration_s: 1.5", "duration_s: 1e999", "duration_s", "finite"},
+    {"rate_hz: 200", "rate_hz: 300", "rate_hz", "microseconds"},
+    {"rate_hz: 200", "rate_hz: 12.5", "rate_hz", "whole number"},
+    {"rate_hz: 200", "rate_hz: fast", "rate_hz", "finite number"},
+    {"start_rad: [0, ", "start_rad: [.inf, ", "start_rad[0]", "finite"},
+    {"start_rad: [0, ", "start_rad: [[0], ", "start_rad[0]", "finite number"},
+    {"start_rad: [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]", "start_rad: []", "start_rad", "1 to 10"},
+    {"start_rad: [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]", "start_rad: 3", "start_rad", "list"},
+    {"start_rad: [0, ", "start_rad: [1, 2, 3, 4, 0, ", "start_rad", "1 to 10"},
+    {"start_rad: [0, ", "start_rad: [", "plant.acceleration_limit_radps2", "list of 6 numbers"},
+    {"kind: servo", "kind: magic", "plant.kind", "'magic'"},
+    {"kind: servo", "kind: ideal", "plant.lag_s", "unknown key"},
+    {"lag_s: 0.03, ", "", "plant.lag_s", "missing"},
+    {"latency_s: 0.01", "latency_s: -0.01", "plant.latency_s", "from 0 to 1"},
+    {"velocity_limit_radps: 2", "velocity_limit_radps: 0", "plant.velocity_limit_radps", "is 0"},
+    {"velocity_limit_radps: 2", "velocity_limit_radps: [2, 2]", "plant.velocity_limit_radps", "list of 7 numbers"},
+    {"plant: {", "plant: [], other: {", "", "line 7"},
+    {"position_m: [1, 2, 3]", "position_m: [1, 2]", "target.position_m", "3 numbers"},
+    {"position_m: [1, 2, 3]", "position_m: [1, 2, .nan]", "target.position_m[2]", "finite"},
+    {"position_m: [1, 2, 3]", "position_m: [1, 2, 3e9]", "target.position_m[2]", "from -1000 to 1000"},
+    {"velocity_mps: [0, 0.1, 0], ", "", "target.velocity_mps", "missing"},
+    {"quaternion: [0, 1, 0, 0], ", "", "target.angular_velocity_radps", "needs a quaternion"},
+    {"quaternion: [0, 1, 0, 0]", "quaternion: [0, 0, 0, 0]", "target.quaternion", "length 1"},
+    {"quaternion: [0, 1, 0, 0]", "quaternion: [0, 1, 0]", "target.quaternion", "4 numbers"},
+    {"id: 9", "id: 4", "obstacles[1].id", "twice"},
+    {"id: 9", "id: -1", "obstacles[1].id", "from 0"},
+    {"id: 9, ", "", "obstacles[1].id", "missing"},
+    {"shape: box", "shape: cone", "obstacles[0].shape", "'cone'"},
+    {"shape: box", "shape: sphere", "obstacles[0].radius_m", "missing"},
+    {"radius_m: 0.1", "radius_m: 0", "obstacles[1].radius_m", "from 0.0001"},
+    {"length_m: 0.5", "length_m: 0.5, edges_m: [1, 1, 1]", "obstacles[1].edges_m", "unknown key"},
+    {"edges_m: [0.1, 0.2, 0.3]", "edges_m: [0.1, -0.2, 0.3]", "obstacles[0].edges_m[1]", "is -0.2"},
+    {"  - {id: 4", "  - 7\n  - {id: 4", "obstacles[0]", "map"},
+    {"clearance_min_m", "clearance", "expect.clearance", "unknown key"},
+    {"axis_distance_m: 0.2", "axis_distance_m: far", "published.axis_distance_m", "finite number"},
+    {"title: two", "? [a]\n: b\ntitle: two", "(not a text)", "unknown key"},
+    {"title: two", "\"a\\nb\": 1\ntitle: two", "a?b", "unknown key"},
+    {"config: firmware", "config: [x", "", "line"},
+};
+
+void every_mistake_is_one_line_naming_file_and_key(void**) {
+  for (const Mistake& mistake : kMistakes) {
+    const std::string text = changed(mistake.from, mistake.to);
+    const std::string message = message_of([&] { load(text); });
+    const std::string key = *mistake.key ? std::string(mistake.key) + ": " : "";
+    check(one_line_with(message, {"a.yaml: " + key, mistake.complaint}), "'%s' -> '%s': %s", mistake.from, mistake.to,
+          message.c_str());
+  }
+}
+
+void files_that_are_no_scenario_are_refused_in_one_line(void**) {
+  const std::string texts[] = {"",
+                               "\n",
+                               "just a text",
+                               "[1, 2]",
+                               "{",
+                               "a: b: c",
+                               "\t",
+                               std::string(100'000, '['),
+                               std::string("a\0b", 3),
+                               "\xff\xfe",
+                               "*alias",
+                               "&a [*a]"};
+  for (const std::string& text : texts) {
+    const std::string message = message_of([&] { load(text); });
+    check(one_line_with(message, {"a.yaml: "}), "%.20s: %s", text.c_str(), message.c_str());
+  }
+  assert_true(one_line_with(message_of([] { load_scenario("no/such.yaml"); }), {"no/such.yaml: cannot be read"}));
+  assert_true(one_line_with(message_of([] { load_scenario("host"); }), {"host: "}));
+}
+
+void the_rate_is_100_hz_unless_said_otherwise(void**) {
+  assert_int_equal(load(changed("rate_hz: 200\n", "")).period_us, 10'000);
+}
+
+void the_urdf_is_found_from_the_folder_of_the_scenario_upwards(void**) {
+  const Scenario s = load_scenario("host/scenarios/paper-a.yaml");
+  assert_true(std::filesystem::equivalent(s.robot.urdf_file, "urdf/lwa3.urdf"));
+}
+
+void the_three_scenarios_of_the_paper(void**) {
+  const Scenario a = load_scenario("host/scenarios/paper-a.yaml"), b = load_scenario("host/scenarios/paper-b.yaml"),
+                 c = load_scenario("host/scenarios/paper-c.yaml");
+  check_near(a.duration_s(), 2.3, 0);
+  check_near(b.duration_s(), 8, 0);
+  check_near(c.duration_s(), 2.8, 0);
+  assert_int_equal(a.world.obstacles.size(), 0);
+  check_near(a.world.target.motion.position_m, Vector3d(0, 0.15, 1), 0);
+  check_near(a.world.target.motion.velocity_mps, Vector3d(0, 0.2, 0), 0);
+  check_near(b.world.target.motion.position_m, Vector3d(0.4, 0.4, 0.8), 0);
+  check_near(c.world.target.motion.velocity_mps, Vector3d(0.2, 0, 0), 0);
+  for (const Scenario* s : {&b, &c}) {
+    assert_int_equal(s->world.obstacles.size(), 3);
+    check_near(s->world.obstacles[2].motion.position_m, Vector3d(-0.1, 0.1, 0.8), 0);
+    check_near(s->world.obstacles[1].motion.velocity_mps, Vector3d(0, 0.2, 0), 0);
+    check_near(s->world.obstacles[0].solid.size_m.x(), 0.05, 0);
+  }
+  for (const Scenario* s : {&a, &b, &c}) {
+    assert_true(s->plant.kind == PlantSpec::Kind::kIdeal);
+    check_near(s->start_rad[1], M_PI / 2, 0);
+    check_near(s->start_rad[3], -M_PI / 2, 0);
+    check_near(*s->expect.clearance_min_m, 0, 0);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_complete_scenario_arrives_value_by_value),
+      cmocka_unit_test(every_mistake_is_one_line_naming_file_and_key),
+      cmocka_unit_test(files_that_are_no_scenario_are_refused_in_one_line),
+      cmocka_unit_test(the_rate_is_100_hz_unless_said_otherwise),
+      cmocka_unit_test(the_urdf_is_found_from_the_folder_of_the_scenario_upwards),
+      cmocka_unit_test(the_three_scenarios_of_the_paper),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,133 @@
+#include "host/sim/solid.h"
+
+#include <string>
+
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+using namespace sidestep::sim;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using sidestep::test::Random;
+
+namespace {
+
+const Solid kCylinder{Shape::kCylinder, {0.05, 0.3, 0}}, kBall{Shape::kSphere, {0.05, 0, 0}},
+    kCube{Shape::kBox, {0.2, 0.2, 0.2}}, kCapsule{Shape::kCapsule, {0.05, 0.2, 0}};
+
+Isometry3d at(const Vector3d& position_m, const Vector3d& axis = Vector3d::UnitZ(), double turn_rad = 0) {
+  return Eigen::Translation3d(position_m) * Eigen::AngleAxisd(turn_rad, axis);
+}
+
+Isometry3d lying(const Vector3d& position_m) {
+  return at(position_m, Vector3d::UnitY(), M_PI / 2);
+}  // z along x
+
+struct Case {
+  const char* name;
+  Solid a, b;
+  Isometry3d base_from_b;  // a stands at the origin
+  double distance_m;
+  double tolerance_m;
+};
+
+const Case kCases[] = {
+    {"ball beside cylinder", kCylinder, kBall, at({0.2, 0, 0.1}), 0.1, 1e-12},
+    {"ball above cylinder", kCylinder, kBall, at({0.02, 0, 0.3}), 0.1, 1e-12},
+    {"ball off the rim of cylinder", kCylinder, kBall, at({0.05 + 0.09, 0, 0.15 + 0.12}), 0.1, 1e-12},
+    {"ball in the side of cylinder", kCylinder, kBall, at({0.07, 0, 0}), -0.03, 1e-12},
+    {"ball in the end of cylinder", kCylinder, kBall, at({0, 0, 0.18}), -0.02, 1e-12},
+    {"ball on the axis of cylinder", kCylinder, kBall, at({0, 0, 0}), -0.1, 1e-12},
+    {"ball touches cylinder", kCylinder, kBall, at({0, 0.1, 0}), 0, 1e-12},
+    {"ball beside ball", kBall, kBall, at({0, 0.3, 0.4}), 0.4, 1e-12},
+    {"ball in ball", kBall, kBall, at({0.06, 0, 0.08}), 0.0, 1e-12},
+    {"ball on ball", kBall, kBall, at({0, 0, 0}), -0.1, 1e-12},
+    {"ball off a corner of cube", kCube, kBall, at({0.12, 0.14, 0.14}), -0.05 + 0.06, 1e-12},
+    {"ball in a face of cube", kCube, kBall, at({0, 0, -0.09}), -0.06, 1e-12},
+    {"ball beside capsule", kBall, kCapsule, at({0.2, 0, 0.09}), 0.1, 1e-9},
+    {"ball beyond the end of capsule", kBall, kCapsule, at({0, 0, 0.3}), 0.1, 1e-9},
+    {"ball in capsule", kBall, kCapsule, at({0.03, 0, 0.05}), -0.07, 1e-9},
+    {"capsule beside cylinder", kCylinder, kCapsule, at({0.15, 0.2, 0}), 0.15, 1e-9},
+    {"capsule across cylinder", kCylinder, kCapsule, lying({0, 0.2, 0.1}), 0.1, 1e-9},
+    {"capsule points at cylinder", kCylinder, kCapsule, lying({0.3, 0, 0}), 0.1, 1e-9},
+    {"capsule points into cylinder", kCylinder, kCapsule, lying({0.17, 0, 0.02}), -0.03, 1e-9},
+    {"capsule across in cylinder", kCylinder, kCapsule, lying({0, 0.08, 0}), -0.02, 1e-9},
+    {"capsule along in cylinder", kCylinder, kCapsule, at({0, 0.06, 0.1}), -0.04, 1e-9},
+    {"capsule on the axis of cylinder", kCylinder, kCapsule, at({0, 0, 0}), -0.1, 1e-9},
+    {"capsule over cube", kCube, kCapsule, lying({0.05, 0.05, 0.2}), 0.05, 1e-9},
+    {"capsule in cube", kCube, kCapsule, lying({0.05, 0.05, 0.12}), -0.03, 1e-9},
+    {"cube beside cylinder", kCylinder, kCube, at({0.3, 0, 0}), 0.15, 1e-9},
+    {"edge of cube beside cylinder", kCylinder, kCube, at({0.3, 0, 0}, Vector3d::UnitZ(), M_PI / 4),
+     0.25 - 0.1 * M_SQRT2, 1e-9},
+    {"cube over cylinder", kCylinder, kCube, at({0.1, 0.05, 0.3}), 0.05, 1e-9},
+    {"cube in the side of cylinder", kCylinder, kCube, at({0.13, 0, 0}), -0.02, 1e-6},
+    {"cube touches cylinder", kCylinder, kCube, at({0.15, 0, 0}), 0, 1e-9},
+    {"capsule touches cylinder", kCylinder, kCapsule, lying({0, 0.1, 0.1}), 0, 1e-9},
+    {"cube touches cube", kCube, kCube, at({0.05, 0.2, 0}), 0, 1e-9},
+    {"cube beside cube", kCube, kCube, at({0.05, 0.3, 0.1}), 0.1, 1e-9},
+    {"cube in cube", kCube, kCube, at({0.01, 0.17, 0.02}), -0.03, 1e-9},
+};
+
+void hand_worked_distances(void**) {
+  for (const Case& c : kCases) {
+    check_near_because(signed_distance_m(c.a, at({0, 0, 0}), c.b, c.base_from_b), c.distance_m, c.tolerance_m, "%s",
+                       c.name);
+    check_near_because(signed_distance_m(c.b, c.base_from_b, c.a, at({0, 0, 0})), c.distance_m, c.tolerance_m,
+                       "%s, swapped", c.name);
+  }
+}
+
+Solid random_solid(Random& random) {
+  const Shape shapes[] = {Shape::kSphere, Shape::kCapsule, Shape::kBox, Shape::kCylinder};
+  return {shapes[random.index(4)], random.inside(0.01, 0.4)};
+}
+
+// A third of the poses on a grid with axes aligned: what degenerates does so there.
+Isometry3d random_pose(Random& random) {
+  Vector3d position_m = random.inside(-0.4, 0.4);
+  if (!random.chance(1.0 / 3)) return Eigen::Translation3d(position_m) * random.turn();
+  position_m = (position_m * 10).array().round() / 10;
+  return at(position_m, Vector3d::Unit(random.index(3)), random.index(4) * M_PI / 2);
+}
+
+void distances_are_finite_and_within_their_bounds(void**) {
+  Random random(1);
+  for (int trial = 0; trial < 5000; ++trial) {
+    const Solid a = random_solid(random), b = random_solid(random);
+    const Isometry3d base_from_a = random_pose(random), base_from_b = random_pose(random);
+    const double centres_m = (base_from_a.translation() - base_from_b.translation()).norm();
+    const double distance_m = signed_distance_m(a, base_from_a, b, base_from_b);
+    check(distance_m <= centres_m, "trial %d: %g", trial, distance_m);
+    check(distance_m >= centres_m - bounding_radius_m(a) - bounding_radius_m(b) - 1e-9, "trial %d: %g", trial,
+          distance_m);
+  }
+}
+
+// A shift changes a distance by at most its length, so nothing may jump where surfaces touch.
+void distances_do_not_jump_from_apart_to_penetrating(void**) {
+  Random random(2);
+  const Solid links[] = {kCylinder, kBall}, obstacles[] = {kBall, kCapsule};
+  for (int trial = 0; trial < 400; ++trial) {
+    const Solid &a = links[trial % 2], &b = obstacles[trial / 2 % 2];
+    Isometry3d base_from_b = random_pose(random);
+    const Vector3d step_m = -base_from_b.translation().normalized() * 0.002;
+    double before_m = signed_distance_m(a, at({0, 0, 0}), b, base_from_b);
+    for (int i = 0; i < 100; ++i) {
+      base_from_b.pretranslate(step_m);
+      const double distance_m = signed_distance_m(a, at({0, 0, 0}), b, base_from_b);
+      check(std::abs(distance_m - before_m) <= 0.002 + 1e-7, "trial %d: from %g to %g", trial, before_m, distance_m);
+      before_m = distance_m;
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(hand_worked_distances),
+      cmocka_unit_test(distances_are_finite_and_within_their_bounds),
+      cmocka_unit_test(distances_do_not_jump_from_apart_to_penetrating),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
