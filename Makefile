@@ -12,7 +12,7 @@ MAKEFLAGS += -j$(shell nproc) --no-print-directory
 PYTHON   := $(BUILD)/venv/bin/python
 SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
 # Eigen at -O2 makes gcc see uninitialised values where there are none.
-CXXFLAGS := -std=c++17 -O2 -g -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
+CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
 LIBS     := -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
 

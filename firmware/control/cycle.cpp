@@ -33,9 +33,10 @@ Target present(const Latest<Target>& latest, double now_s) {
 }
 
 /// A new stream of commands starts from the measured arm, so that nothing jumps; a running one goes on from its last.
-void start_from(const ArmState& arm, State& next) {
+void start_from(const Model& model, const ArmState& arm, State& next) {
+  const JointVector& fastest = model.arm.limits.velocity_radps;
   next.position_rad = arm.position_rad;
-  next.velocity_radps = arm.velocity_radps;
+  next.velocity_radps = arm.velocity_radps.cwiseMax(-fastest).cwiseMin(fastest);
   next.planning = false;
 }
 
@@ -47,18 +48,22 @@ Wish ask_law(const Model& model, const Situation& situation, const State& state)
   return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
 }
 
+/// How far the command of a joint has to close in on the measured arm, rad: nothing while it follows.
+double catch_up(const Model& model, const State& state, const ArmState& arm, int joint) {
+  const double error_rad = arm.position_rad[joint] - state.position_rad[joint];
+  return std::abs(error_rad) > model.settings.following_error_rad ? error_rad : 0.0;
+}
+
 /// Where the velocity leads from the last commanded position. Should the arm have fallen too far behind or been moved,
 /// the command closes in on it with what the velocity limit leaves.
 JointVector lead(const Model& model, const State& state, const ArmState& arm, const JointVector& velocity_radps) {
   const double period_s = model.settings.period_s();
   const JointLimits& limits = model.arm.limits;
+  const bool braking = state.supervision.mode != Mode::kHold && state.supervision.mode != Mode::kTrack;
   JointVector position_rad = state.position_rad + velocity_radps * period_s;
   for (int i = 0; i < model.arm.joints; ++i) {
-    const double error_rad = arm.position_rad[i] - state.position_rad[i];
-    if (std::abs(error_rad) > model.settings.following_error_rad) {
-      const double room_rad = std::max(0.0, limits.velocity_radps[i] - std::abs(velocity_radps[i])) * period_s;
-      position_rad[i] += std::clamp(error_rad, -room_rad, room_rad);
-    }
+    const double room_rad = std::max(0.0, limits.velocity_radps[i] - std::abs(velocity_radps[i])) * period_s;
+    if (!braking) position_rad[i] += std::clamp(catch_up(model, state, arm, i), -room_rad, room_rad);
     // Rounding only; an arm that is outside its limits is led back, not pulled.
     const bool inside = state.position_rad[i] >= limits.lower_rad[i] && state.position_rad[i] <= limits.upper_rad[i];
     if (inside) position_rad[i] = std::clamp(position_rad[i], limits.lower_rad[i], limits.upper_rad[i]);
@@ -67,10 +72,19 @@ JointVector lead(const Model& model, const State& state, const ArmState& arm, co
 }
 
 /// The velocities that the joint limits leave for the coming period, wherever between command and measurement the arm
-/// is.
+/// is. The command may not lead the arm by more than the following error either: an arm that is held fast stops it.
 VelocityRange next_range(const Model& model, const State& state, const ArmState& arm) {
-  return velocity_range(model.arm.limits, state.position_rad.cwiseMin(arm.position_rad),
-                        state.position_rad.cwiseMax(arm.position_rad), state.velocity_radps, model.settings.period_s());
+  const double period_s = model.settings.period_s();
+  JointLimits limits = model.arm.limits;
+  JointVector position_rad = state.position_rad;
+  for (int i = 0; i < model.arm.joints; ++i) {
+    const double room_rad = limits.velocity_radps[i] * period_s;
+    position_rad[i] += std::clamp(catch_up(model, state, arm, i), -room_rad, room_rad);
+    limits.lower_rad[i] = std::max(limits.lower_rad[i], arm.position_rad[i] - model.settings.following_error_rad);
+    limits.upper_rad[i] = std::min(limits.upper_rad[i], arm.position_rad[i] + model.settings.following_error_rad);
+  }
+  return velocity_range(limits, position_rad.cwiseMin(arm.position_rad), position_rad.cwiseMax(arm.position_rad),
+                        state.velocity_radps, period_s);
 }
 
 /// Far from the target there are many ways, so a comfortable one is worth a detour; at the target the tool comes first.
@@ -156,7 +170,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   next.supervision = next_mode(state.supervision, facts);
   if (facts.arm_known) {
     const ArmState& arm = *inputs.arm.message;
-    if (!state.commanding || facts.arm_broke) start_from(arm, next);
+    if (!state.commanding) start_from(model, arm, next);
 
     const Posture posture = forward(model.arm, arm.position_rad);
     const ObstacleView obstacles = view_obstacles(model.settings, inputs.obstacles, now_s);
@@ -164,7 +178,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     const Clearance clearance = measure_clearance(model.arm, posture, obstacles, reach);
     const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
 
-    const Situation situation{model.arm, posture, arm.velocity_radps, target, obstacles, clearance};
+    const Situation situation{model.arm, posture, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
     const Wish wish = ask_law(model, situation, next);
     const VelocityRange range = next_range(model, next, arm);
     const JointVector safe = keep_clear(model, situation, arm, range, next, wish);
@@ -185,7 +199,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   report.mode = next.supervision.mode;
   report.fault = next.supervision.fault;
   report.message = next.supervision.message;
-  result.commanding = next.commanding;
+  result.commanding = next.commanding || (state.commanding && report.mode == Mode::kFault);  // rest is said too
   return result;
 }
 

@@ -37,7 +37,7 @@ bool plausible(const Obstacle& obstacle) {
 }
 
 bool Order::accept(int64_t utime, double now_s, double restart_s) {
-  const bool silent = now_s - accepted_s_ > restart_s || now_s < accepted_s_;
+  const bool silent = std::abs(now_s - accepted_s_) > restart_s;  // or the clock was set back
   const bool went_back = static_cast<double>(utime_) - static_cast<double>(utime) > restart_s * 1e6;
   if (any_ && utime <= utime_ && !silent && !went_back) return false;
   any_ = true;

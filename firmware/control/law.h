@@ -10,6 +10,7 @@ namespace sidestep {
 struct Situation {
   const Arm& arm;
   const Posture& posture;
+  const JointVector& position_rad;    ///< measured
   const JointVector& velocity_radps;  ///< measured
   const Target& target;               ///< moved forward to the present
   const ObstacleView& obstacles;

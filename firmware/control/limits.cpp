@@ -50,7 +50,8 @@ int apply_limits(const JointLimits& limits, const VelocityRange& range, const Jo
   }
   for (Eigen::Index i = 0; i < velocity_radps.size(); ++i) {
     const double allowed = std::clamp(velocity_radps[i], range.lower_radps[i], range.upper_radps[i]);
-    if (allowed == velocity_radps[i]) continue;
+    const double rounding_radps = 1e-12;
+    if (std::abs(allowed - velocity_radps[i]) < rounding_radps) continue;
     const double change = std::abs(velocity_radps[i] - last_velocity_radps[i]);
     limiting |= change > limits.acceleration_radps2[i] * period_s ? kLimitingAcceleration : kLimitingPosition;
     velocity_radps[i] = allowed;

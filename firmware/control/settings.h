@@ -32,11 +32,12 @@ struct PaperGains {
 
 /// The law of our own: where the tool shall go, before the shield.
 struct SidestepGains {
-  double k_pos_per_s = 8.0;  ///< tool speed over distance to the target
-  double k_ori_per_s = 4.0;  ///< likewise for the angle, when the target asks for an orientation
-  double v_max_mps = 1.0;    ///< largest tool speed toward the target, beside the target's own
-  double lambda_0 = 0.05;    ///< largest damping near singular postures, paper eq (6)
-  double sigma_0 = 0.05;     ///< damping begins below this singular value
+  double k_pos_per_s = 8.0;      ///< tool speed over distance to the target
+  double k_ori_per_s = 4.0;      ///< likewise for the angle, when the target asks for an orientation
+  double k_posture_per_s = 0.5;  ///< return of the joints from their limits, as far as the tool does not notice
+  double v_max_mps = 1.0;        ///< largest tool speed toward the target, beside the target's own
+  double lambda_0 = 0.05;        ///< largest damping near singular postures, paper eq (6)
+  double sigma_0 = 0.05;         ///< damping begins below this singular value
 };
 
 /// The shield: the joint velocity nearest to the wish that keeps clear.
@@ -79,7 +80,7 @@ struct Settings {
   bool foresight_enabled = true;          ///< off for experiments only
   bool wait_for_obstacles = true;         ///< false: no obstacle set ever received counts as no obstacles
   double obstacle_speed_bound_mps = 2.0;  ///< how fast an obstacle that is no longer reported may move
-  double following_error_rad = 0.1;       ///< largest distance of the command ahead of the measured arm, per joint
+  double following_error_rad = 0.5;       ///< how far the command may lead the measured arm, per joint
 
   double period_s() const { return 1.0 / rate_hz; }
 };

@@ -13,6 +13,40 @@ Vector3 clipped(const Vector3& v, double largest) {
   return norm > largest ? Vector3(v * (largest / norm)) : v;
 }
 
+/// Direction toward the middle of the joints' ranges, rad: hardly anything within, one radian at a limit.
+JointVector away_from_limits(const JointLimits& limits, const JointVector& q_rad) {
+  JointVector p(q_rad.size());
+  for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
+    const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
+    const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
+    const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
+    p[i] = -share * share * share;
+  }
+  return p;
+}
+
+/// J* of paper eqs (5) and (6), by the eigenvalues of J J^T.
+struct DampedInverse {
+  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+  const TaskJacobian& jacobian;
+  Eigen::SelfAdjointEigenSolver<Gram> eigen;
+  double lambda;
+
+  DampedInverse(const SidestepGains& gains, const TaskJacobian& j) : jacobian(j), eigen(Gram(j * j.transpose())) {
+    const double sigma_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
+    lambda = std::sqrt(damping_squared(gains.lambda_0, gains.sigma_0, sigma_m));
+  }
+
+  JointVector solve(const TaskVector& x) const {
+    const double smallest = 1e-12;  // sigma^2; only without damping could it be smaller
+    const TaskVector scaled =
+        (eigen.eigenvectors().transpose() * x)
+            .cwiseQuotient((eigen.eigenvalues().array() + lambda * lambda).max(smallest).matrix());
+    return jacobian.transpose() * (eigen.eigenvectors() * scaled);
+  }
+};
+
 }  // namespace
 
 Wish sidestep_law(const SidestepGains& gains, const Situation& now) {
@@ -31,15 +65,11 @@ Wish sidestep_law(const SidestepGains& gains, const Situation& now) {
     x.tail<3>() = target.angular_velocity_radps + gains.k_ori_per_s * to_goal.angle() * to_goal.axis();
   }
 
-  // Damped as in paper eqs (5) and (6).
-  const auto gram = (jacobian * jacobian.transpose()).eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>> eigen(gram);
-  const double sigma_m = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
-  const double lambda2 = damping_squared(gains.lambda_0, gains.sigma_0, sigma_m);
-  wish.damping = std::sqrt(lambda2);
-  const TaskVector scaled =
-      (eigen.eigenvectors().transpose() * x).cwiseQuotient((eigen.eigenvalues().array() + lambda2).max(1e-12).matrix());
-  wish.velocity_radps = jacobian.transpose() * (eigen.eigenvectors() * scaled);
+  // The posture's share goes in as a preference: J* (x - J p) + p is p in the null space and x in the task.
+  const JointVector p_radps = gains.k_posture_per_s * away_from_limits(now.arm.limits, now.position_rad);
+  const DampedInverse inverse(gains, jacobian);
+  wish.damping = inverse.lambda;
+  wish.velocity_radps = p_radps + inverse.solve(x - jacobian * p_radps);
   return wish;
 }
 

@@ -63,8 +63,8 @@ struct Admission::Scratch {
   obstacles_t obstacles;
 };
 
-Admission::Admission(int joints, const Ages& ages)
-    : joints_(joints), ages_(ages), scratch_(std::make_unique<Scratch>()) {
+Admission::Admission(int joints, const Ages& ages, bool arm_is_clock)
+    : joints_(joints), ages_(ages), arm_is_clock_(arm_is_clock), scratch_(std::make_unique<Scratch>()) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 
@@ -87,7 +87,8 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ArmState& va
   value.position_rad = Eigen::Map<const Eigen::VectorXd>(message.joint_position.data(), joints_);
   value.velocity_radps = Eigen::Map<const Eigen::VectorXd>(message.joint_velocity.data(), joints_);
   if (!plausible(value, joints_)) return reject("arm state with impossible values");
-  return arm_order_.accept(value.utime, now_s, ages_.arm_state_lost_s);
+  const double received_s = arm_is_clock_ ? static_cast<double>(value.utime) * 1e-6 : now_s;
+  return arm_order_.accept(value.utime, received_s, ages_.arm_state_lost_s);
 }
 
 bool Admission::admit(const void* bytes, size_t size, double now_s, Target& value) {

@@ -11,7 +11,8 @@ namespace sidestep {
 /// counted and named. Never throws; does not allocate once each kind of message has been seen at its largest.
 class Admission {
  public:
-  Admission(int joints, const Ages& ages);
+  /// arm_is_clock: in lockstep time is the utime of the arm states, whatever now_s says about them.
+  Admission(int joints, const Ages& ages, bool arm_is_clock = false);
   ~Admission();
 
   /// Each returns whether `value` was filled; when not, its content is arbitrary. now_s: local time of receipt.
@@ -28,6 +29,7 @@ class Admission {
 
   int joints_;
   Ages ages_;
+  bool arm_is_clock_;
   Order arm_order_, target_order_, obstacles_order_;
   int64_t rejected_ = 0;
   const char* reason_ = "";

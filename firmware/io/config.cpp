@@ -33,7 +33,11 @@ void read_limits(Section limits, Arm& arm) {
   limits.per_joint("lower_rad", arm.joints, arm.limits.lower_rad);
   limits.per_joint("upper_rad", arm.joints, arm.limits.upper_rad);
   limits.finish();
-  check_limits(arm);
+  try {
+    check_limits(arm);
+  } catch (const std::exception& error) {
+    limits.fail("velocity_radps, acceleration_radps2, lower_rad or upper_rad", error.what());
+  }
 }
 
 void read_paper(Section paper, PaperGains& gains) {
@@ -63,6 +67,7 @@ void read_paper(Section paper, PaperGains& gains) {
 void read_sidestep(Section sidestep, SidestepGains& gains) {
   sidestep.positive("k_pos_per_s", gains.k_pos_per_s);
   sidestep.positive("k_ori_per_s", gains.k_ori_per_s);
+  sidestep.not_negative("k_posture_per_s", gains.k_posture_per_s);
   sidestep.positive("v_max_mps", gains.v_max_mps);
   sidestep.not_negative("lambda_0", gains.lambda_0);
   sidestep.positive("sigma_0", gains.sigma_0);
@@ -114,12 +119,18 @@ void read_obstacles(Section obstacles, Settings& settings) {
   obstacles.finish();
 }
 
+void read_channel(Section& section, const std::string& key, std::string& name) {
+  section.text(key, name);
+  const size_t longest = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+  if (name.size() > longest) section.fail(key, "is longer than the 63 characters that LCM can send");
+}
+
 void read_channels(Section section, Channels& channels) {
-  section.text("target", channels.target);
-  section.text("obstacles", channels.obstacles);
-  section.text("arm_state", channels.arm_state);
-  section.text("arm_command", channels.arm_command);
-  section.text("controller_status", channels.controller_status);
+  read_channel(section, "target", channels.target);
+  read_channel(section, "obstacles", channels.obstacles);
+  read_channel(section, "arm_state", channels.arm_state);
+  read_channel(section, "arm_command", channels.arm_command);
+  read_channel(section, "controller_status", channels.controller_status);
   section.finish();
 }
 

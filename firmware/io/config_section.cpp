@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -31,7 +33,13 @@ Section Section::of_file(const std::string& file) {
 }
 
 void Section::fail(const std::string& key, const std::string& what) const {
-  throw std::runtime_error(fmt::format("{}: {}{}: {}", file_, path_, key, what));
+  // A scrambled file can make anything a key; the message stays one line all the same.
+  const size_t longest = 60;
+  std::string name = path_ + key;
+  if (name.size() > longest) name = name.substr(0, longest) + "...";
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  throw std::runtime_error(fmt::format("{}: {}: {}", file_, name, what));
 }
 
 YAML::Node Section::take(const std::string& key) {

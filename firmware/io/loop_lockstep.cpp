@@ -17,7 +17,7 @@ class Lockstep {
   Lockstep(const Config& config, const std::string& lcm_url, const std::atomic<bool>& stop)
       : model_(config.model),
         wire_(lcm_url, config.channels, config.model.arm),
-        admission_(config.model.arm.joints, config.model.settings.ages),
+        admission_(config.model.arm.joints, config.model.settings.ages, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
         stop_(stop) {
     wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });

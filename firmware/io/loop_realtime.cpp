@@ -34,7 +34,7 @@ Latest<Message> read(Mailbox<Mail<Message>>& mailbox) {
 /// The receiving side: checks what comes in and puts the newest valid message of each kind into its mailbox.
 class Receiver {
  public:
-  Receiver(Wire& wire, int joints, const Ages& ages) : wire_(wire), admission_(joints, ages) {
+  Receiver(Wire& wire, int joints, const Ages& ages) : wire_(wire), admission_(joints, ages, false) {
     wire.on_arm_state([this](const void* bytes, size_t size) { post(bytes, size, arm); });
     wire.on_target([this](const void* bytes, size_t size) { post(bytes, size, target); });
     wire.on_obstacles([this](const void* bytes, size_t size) { post(bytes, size, obstacles); });

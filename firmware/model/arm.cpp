@@ -39,15 +39,31 @@ Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
   return result;
 }
 
+/// Keeps the first complaint of the URDF parser, which would print several and drop the elements it complains about.
+class Complaints : public console_bridge::OutputHandler {
+ public:
+  Complaints() { console_bridge::useOutputHandler(this); }
+  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
+  Complaints(const Complaints&) = delete;
+  Complaints& operator=(const Complaints&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text.substr(0, text.find('\n'));
+  }
+  const std::string& first() const { return first_; }
+
+ private:
+  std::string first_;
+};
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) fail("{}: cannot be read", file);
   std::ostringstream text;
   text << stream.rdbuf();
-  // The parser would print several lines of its own before it gives up.
-  console_bridge::noOutputHandler();
+  const Complaints complaints;
   urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
-  console_bridge::restorePreviousOutputHandler();
+  if (!complaints.first().empty()) fail("{}: not a valid URDF: {}", file, complaints.first());
   if (!model || !model->getRoot()) fail("{}: not a valid URDF", file);
   return model;
 }

@@ -9,7 +9,7 @@ namespace sidestep::campaign {
 /// Watches the true arm among the true spheres, at every period.
 class Judge {
  public:
-  /// The arm starts with the velocity qd_radps: the controller may evade before it tracks.
+  /// qd_radps was commanded last: the controller may evade before it tracks.
   Judge(const Scene& scene, const Joints& qd_radps);
 
   /// The arm at period k; to be called for k = 0, 1, ...

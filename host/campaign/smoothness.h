@@ -7,7 +7,7 @@ namespace sidestep::campaign {
 /// How smooth a stream of joint velocity commands is.
 class Smoothness {
  public:
-  /// The arm starts with this velocity.
+  /// This velocity was commanded before the first.
   explicit Smoothness(const Joints& velocity_radps) : velocity_radps_(velocity_radps) {}
 
   /// The next command; `near` tells whether an obstacle is close enough for chatter to matter.

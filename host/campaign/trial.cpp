@@ -67,7 +67,7 @@ Outcome run_trial(const Scene& scene, Pilot& pilot) {
     loop.move(steering);
     steering = loop.ask(0.0);
   }
-  Judge judge(scene, loop.plant().qd_radps());
+  Judge judge(scene, loop.plant().last_command_radps());
   for (int k = 0; k < scene.periods; ++k) {
     if (k > 0) steering = loop.ask(k * kPeriod_s);
     judge.see(k, loop.plant().q_rad());

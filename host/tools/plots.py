@@ -253,7 +253,7 @@ def plot_both_paths(axes, runs):
     low, high = points.min(axis=0) - 0.1, points.max(axis=0) + 0.1
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x, m", ylabel="y, m")
     axes.set_title("Tool paths from above")
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", adjustable="box")
     axes.legend()
 
 

@@ -1,0 +1,196 @@
+#include <csignal>
+
+#include "tests/support/check.h"
+#include "tests/support/live_arm.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/process.h"
+
+using namespace sidestep;
+using test::Bytes;
+using test::LiveArm;
+using test::private_lcm_url;
+using test::Process;
+
+namespace {
+
+using Status = controller_status_t;
+const char* const kLaws[] = {"paper", "sidestep"};
+
+Process start_controller(const std::string& law) {
+  return Process(
+      {"build/controller", "--config", "firmware/config/lwa3.yaml", "--law", law, "--lcm-url", private_lcm_url()});
+}
+
+void check_stream(const LiveArm& arm) {
+  const auto received = static_cast<int64_t>(arm.peer.commands.size());
+  check(20 * arm.lost() <= received, "%ld of %ld commands were lost: nothing is proved", arm.lost(),
+        arm.lost() + received);
+  check(arm.commands.complaint().empty(), "%s", arm.commands.complaint().c_str());
+}
+
+/// A controller in real time that is moving the arm.
+struct Scene {
+  Process controller;
+  LiveArm arm{test::lwa3().limits, test::home_rad()};
+
+  explicit Scene(const std::string& law) : controller(start_controller(law)) {
+    arm.target_m = Vector3(0.1, 0.45, 0.7);
+    check(arm.run_until(Status::TRACK, 10.0), "%s", controller.output().c_str());
+    for (int i = 0; i < 100 && arm.speed_radps() < 0.3; ++i) arm.run(0.02);
+    check(arm.speed_radps() >= 0.3, "%g rad/s: %s", arm.speed_radps(), arm.status().message.c_str());
+  }
+};
+
+/// Statuses and skipped cycles together, so that a busy machine does not count.
+void the_loop_holds_its_rate(void**) {
+  for (const char* law : kLaws) {
+    Scene scene(law);
+    const Status first = scene.arm.status();
+    const size_t seen = scene.arm.peer.statuses.size();
+    scene.arm.run(2.0);
+    const Status last = scene.arm.status();
+    const double duration_s = static_cast<double>(last.utime - first.utime) * 1e-6;
+    const auto cycles = static_cast<double>(last.seq - first.seq),
+               skipped = static_cast<double>(last.skipped_cycles - first.skipped_cycles);
+    const double rate_hz = (cycles + skipped) / duration_s;
+    print_message("%s: %.1f Hz with %g skipped of %g\n", law, rate_hz, skipped, cycles + skipped);
+    check(rate_hz > 98 && rate_hz < 102, "%g Hz", rate_hz);
+    check(skipped < 0.5 * cycles, "%g of %g cycles were skipped", skipped, cycles + skipped);
+    check_near(static_cast<double>(scene.arm.peer.statuses.size() - seen), cycles, 2.0);
+    check(last.cycle_time > 0 && last.cycle_time < 0.01, "cycle time %g s", last.cycle_time);
+  }
+}
+
+void it_waits_silently_for_the_arm(void**) {
+  LiveArm arm{test::lwa3().limits, test::home_rad()};
+  arm.arm_speaks = false;
+  Process controller = start_controller("sidestep");
+  assert_true(arm.run_until(Status::WAIT, 10.0));
+  arm.run(1.0);
+  assert_true(arm.status().mode == Status::WAIT && arm.says("waiting for the first arm state"));
+  assert_int_equal(arm.peer.commands.size(), 0);
+  arm.arm_speaks = true;
+  assert_true(arm.run_until(Status::TRACK, 3.0));
+}
+
+void an_arm_that_falls_silent_is_braked_and_then_a_fault(void**) {
+  for (const char* law : kLaws) {
+    Scene scene(law);
+    scene.arm.arm_speaks = false;
+    scene.arm.run(1.0);
+    bool braked = false;
+    for (const Status& status : scene.arm.peer.statuses)
+      braked |= status.mode == Status::BRAKE && status.message.find("arm state is too old") != std::string::npos;
+    assert_true(braked);
+    assert_true(scene.arm.status().mode == Status::FAULT && scene.arm.says("no arm state"));
+    assert_int_equal(scene.arm.status().fault, Status::FAULT_ARM_STATE_LOST);
+    check_near(scene.arm.speed_radps(), 0.0, 0);
+    scene.arm.arm_speaks = true;
+    assert_true(scene.arm.run_until(Status::TRACK, 3.0));
+    check_stream(scene.arm);
+  }
+}
+
+void old_obstacles_brake_and_an_old_target_is_held(void**) {
+  Scene scene("sidestep");
+  scene.arm.obstacles_speak = false;
+  assert_true(scene.arm.run_until(Status::BRAKE, 1.0));
+  assert_true(scene.arm.says("obstacles are too old"));
+  scene.arm.run(0.5);
+  check_near(scene.arm.speed_radps(), 0.0, 0);
+  scene.arm.obstacles_speak = true;
+  assert_true(scene.arm.run_until(Status::TRACK, 1.0));
+  scene.arm.target_speaks = false;
+  assert_true(scene.arm.run_until(Status::HOLD, 1.0));
+  assert_true(scene.arm.says("target is too old"));
+  check_stream(scene.arm);
+}
+
+void a_signal_brakes_to_rest_and_ends_with_code_0(void**) {
+  for (const char* law : kLaws) {
+    for (const int signal : {SIGTERM, SIGINT}) {
+      Scene scene(law);
+      scene.controller.signal(signal);
+      scene.arm.run(0.5);
+      const int code = scene.controller.wait(1.5);
+      check(code == 0, "signal %d: code %d, %s", signal, code, scene.controller.output().c_str());
+      check_near(scene.arm.speed_radps(), 0.0, 0);
+      check(scene.controller.output().find("cycles") != std::string::npos, "no summary: %s",
+            scene.controller.output().c_str());
+      scene.arm.commands.end();
+      check_stream(scene.arm);
+    }
+  }
+}
+
+void every_command_of_a_live_run_can_be_followed(void**) {
+  for (const char* law : kLaws) {
+    Scene scene(law);
+    for (int i = 0; i < 8; ++i) {
+      scene.arm.target_m = i % 2 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
+      scene.arm.run(0.4);
+    }
+    assert_true(scene.arm.peer.commands.size() > 150);
+    check_stream(scene.arm);
+  }
+}
+
+/// Thousands of bad messages a second on every channel: counted, and the arm moves on.
+void a_flood_of_hostile_messages_changes_nothing(void**) {
+  Scene scene("sidestep");
+  const int64_t rejected = scene.arm.status().rejected_messages;
+  int64_t sent = 0;
+  for (int i = 0; i < 100; ++i) {
+    scene.arm.target_m = i % 60 < 30 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
+    for (int n = 0; n < 60; ++n, ++sent) {
+      Bytes bytes = test::encoded(test::target_message(1, Vector3(0, 0, 0), Vector3(0, 0, 0)));
+      if (n % 3 == 0) bytes[3] ^= 0x10;
+      if (n % 3 == 1) bytes.resize(static_cast<size_t>(n));
+      if (n % 3 == 2) bytes[16] = 0x7f, bytes[17] = 0xff;
+      const char* const channels[] = {"ARM_STATE", "OBSTACLES", "TARGET"};
+      scene.arm.peer.send_bytes(channels[n % 3], bytes);
+    }
+    scene.arm.run(0.01);
+  }
+  scene.arm.run(0.2);
+  const int64_t counted = scene.arm.status().rejected_messages - rejected;
+  int64_t tracking = 0;
+  for (const Status& status : scene.arm.peer.statuses) tracking += status.mode == Status::TRACK;
+  assert_int_equal(scene.arm.status().mode, Status::TRACK);
+  check(counted <= sent && counted > sent * 9 / 10, "%ld of %ld counted", counted, sent);
+  check(tracking > 60, "tracking in %ld cycles", tracking);
+  check(scene.arm.says("rejected"), "%s", scene.arm.status().message.c_str());
+  check_stream(scene.arm);
+}
+
+/// Killed without a chance to brake, and started again while the arm is somewhere on its way.
+void a_controller_killed_and_started_again_goes_on_without_a_jump(void**) {
+  Scene scene("sidestep");
+  scene.controller.signal(SIGKILL);
+  assert_int_equal(scene.controller.wait(1.0), 128 + SIGKILL);
+  scene.arm.run(0.1);
+  const JointVector rest_rad =
+      Eigen::Map<const Eigen::VectorXd>(scene.arm.peer.commands.back().joint_position.data(), 7);
+  LiveArm arm(test::lwa3().limits, rest_rad);
+  arm.target_m = Vector3(0.1, 0.45, 0.7);
+  Process again = start_controller("sidestep");
+  assert_true(arm.run_until(Status::TRACK, 5.0));
+  arm.run(1.0);
+  check_stream(arm);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(the_loop_holds_its_rate, test::kill_processes),
+      cmocka_unit_test_teardown(it_waits_silently_for_the_arm, test::kill_processes),
+      cmocka_unit_test_teardown(an_arm_that_falls_silent_is_braked_and_then_a_fault, test::kill_processes),
+      cmocka_unit_test_teardown(old_obstacles_brake_and_an_old_target_is_held, test::kill_processes),
+      cmocka_unit_test_teardown(a_signal_brakes_to_rest_and_ends_with_code_0, test::kill_processes),
+      cmocka_unit_test_teardown(every_command_of_a_live_run_can_be_followed, test::kill_processes),
+      cmocka_unit_test_teardown(a_flood_of_hostile_messages_changes_nothing, test::kill_processes),
+      cmocka_unit_test_teardown(a_controller_killed_and_started_again_goes_on_without_a_jump, test::kill_processes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,84 @@
+#include "tests/support/live_arm.h"
+
+#include <algorithm>
+
+namespace sidestep::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kPeriod{10};
+
+int64_t utime_now() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
+}
+
+JointVector to_joints(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+LiveArm::LiveArm(const JointLimits& limits, const JointVector& start_rad)
+    : commands(limits, 0.01),
+      position_rad_(start_rad),
+      velocity_radps_(JointVector::Zero(start_rad.size())),
+      next_(Clock::now()) {
+  commands.begin(position_rad_, velocity_radps_);
+}
+
+/// How many of the cycles after one command and before another were silent by intention.
+int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
+  return std::count_if(peer.statuses.begin(), peer.statuses.end(), [&](const controller_status_t& status) {
+    const bool silent = status.mode == controller_status_t::WAIT || status.mode == controller_status_t::FAULT;
+    return silent && status.seq > one && status.seq < other;
+  });
+}
+
+/// The arm is where it was last told to be.
+void LiveArm::follow() {
+  for (; followed_ < peer.commands.size(); ++followed_) {
+    const joint_command_t& command = peer.commands[followed_];
+    const int64_t before = followed_ > 0 ? peer.commands[followed_ - 1].seq : command.seq - 1;
+    const int64_t lost = command.seq - before - 1 - silent_between(before, command.seq);
+    position_rad_ = to_joints(command.joint_position);
+    velocity_radps_ = to_joints(command.joint_velocity);
+    lost_ += lost;
+    if (lost > 0) commands.begin(position_rad_ - 0.01 * velocity_radps_, velocity_radps_);
+    commands.feed(position_rad_, velocity_radps_);
+  }
+}
+
+void LiveArm::tick() {
+  const int64_t utime = utime_now();
+  if (target_speaks) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
+  if (obstacles_speak)
+    peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));
+  if (arm_speaks) peer.send("ARM_STATE", arm_state_message(utime, position_rad_, velocity_radps_));
+  next_ = std::max(next_ + kPeriod, Clock::now() - kPeriod);
+  peer.listen(std::chrono::duration<double>(next_ - Clock::now()).count());
+  follow();
+}
+
+void LiveArm::run(double duration_s) {
+  const auto end = Clock::now() + std::chrono::duration<double>(duration_s);
+  while (Clock::now() < end) tick();
+}
+
+bool LiveArm::run_until(int8_t mode, double limit_s) {
+  const auto end = Clock::now() + std::chrono::duration<double>(limit_s);
+  while (peer.statuses.empty() || status().mode != mode) {
+    if (Clock::now() > end) return false;
+    tick();
+  }
+  return true;
+}
+
+bool LiveArm::says(const char* words) const {
+  return status().message.find(words) != std::string::npos;
+}
+
+double LiveArm::speed_radps() const {
+  return velocity_radps_.norm();
+}
+
+}  // namespace sidestep::test

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+
+#include "firmware/model/arm.h"
+#include "tests/support/command_check.h"
+#include "tests/support/lcm_peer.h"
+
+namespace sidestep::test {
+
+/// An ideal arm and a small world in real time, 100 times a second, over LCM; all commands go through the check. What
+/// is sent may be changed at any time.
+class LiveArm {
+ public:
+  LiveArm(const JointLimits& limits, const JointVector& start_rad);
+
+  bool arm_speaks = true, target_speaks = true, obstacles_speak = true;
+  Vector3 target_m = Vector3::Zero();
+  LcmPeer peer;
+  CommandCheck commands;
+
+  void run(double duration_s);
+  /// Runs until the last status has this mode, for at most limit_s. Returns whether it has.
+  bool run_until(int8_t mode, double limit_s);
+
+  const controller_status_t& status() const { return peer.statuses.back(); }
+  bool says(const char* words) const;
+  double speed_radps() const;  ///< of the last command
+  /// Commands that the network dropped; the check goes on behind them.
+  int64_t lost() const { return lost_; }
+
+ private:
+  void tick();
+  void follow();
+  int64_t silent_between(int64_t one, int64_t other) const;
+
+  JointVector position_rad_, velocity_radps_;
+  std::chrono::steady_clock::time_point next_;
+  size_t followed_ = 0;
+  int64_t lost_ = 0;
+};
+
+}  // namespace sidestep::test
