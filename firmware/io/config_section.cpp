@@ -36,7 +36,7 @@ void Section::fail(const std::string& key, const std::string& what) const {
   // A scrambled file can make anything a key; the message stays one line all the same.
   const size_t longest = 60;
   std::string name = path_ + key;
-  if (name.size() > longest) name = name.substr(0, longest) + "...";
+  if (name.size() > longest) name.replace(longest, std::string::npos, "...");
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
   throw std::runtime_error(fmt::format("{}: {}: {}", file_, name, what));

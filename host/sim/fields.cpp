@@ -102,6 +102,23 @@ Eigen::VectorXd Fields::numbers(const std::string& key, int least_count, int mos
   return values;
 }
 
+std::vector<Eigen::VectorXd> Fields::rows(const std::string& key, const std::vector<Range>& columns) {
+  const YAML::Node node = value(key);
+  if (!node.IsSequence() || node.size() == 0) fail(key, "must be a list of lists, at least one");
+  std::vector<Eigen::VectorXd> rows;
+  for (const YAML::Node& entry : node) {
+    const std::string row_key = fmt::format("{}[{}]", key, rows.size());
+    if (!entry.IsSequence() || entry.size() != columns.size()) {
+      fail(row_key, fmt::format("must be a list of {} numbers", columns.size()));
+    }
+    Eigen::VectorXd& row = rows.emplace_back(columns.size());
+    for (size_t i = 0; i < columns.size(); ++i) {
+      row[i] = number_in(entry[i], fmt::format("{}[{}]", row_key, i), columns[i]);
+    }
+  }
+  return rows;
+}
+
 Fields Fields::section(const std::string& key) {
   return Fields(value(key), file_, prefix_ + key + ".");
 }

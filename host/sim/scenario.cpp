@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 constexpr int kMostObstacles = 4096;  // what a message may carry
 constexpr Range kPosition{-1000.0, 1000.0};
 constexpr Range kVelocity{-100.0, 100.0};
+constexpr Range kTime{0.0, 1e6};
+constexpr double kBetweenWaypoints_s = 1e-6;  // at least
 constexpr Range kSize{1e-4, 100.0};
 constexpr Range kLimit{1e-6, 1e6};
 
@@ -60,10 +62,24 @@ PlantSpec read_plant(Fields fields, int joints) {
   return plant;
 }
 
+// From position_m and velocity_mps at t = 0 through the waypoints [t_s, x, y, z, vx, vy, vz].
+std::shared_ptr<const Path> read_path(Fields& fields, const Motion& start) {
+  Path path{{0.0, start.position_m, start.velocity_mps}};
+  for (const Eigen::VectorXd& row :
+       fields.rows("waypoints", {kTime, kPosition, kPosition, kPosition, kVelocity, kVelocity, kVelocity})) {
+    if (row[0] < path.back().t_s + kBetweenWaypoints_s) {
+      fields.fail(fmt::format("waypoints[{}][0]", path.size() - 1), "times must increase from 0");
+    }
+    path.push_back({row[0], row.segment<3>(1), row.segment<3>(4)});
+  }
+  return std::make_shared<const Path>(std::move(path));
+}
+
 Motion read_motion(Fields& fields) {
   Motion motion;
   motion.position_m = fields.vector("position_m", kPosition);
   motion.velocity_mps = fields.vector("velocity_mps", kVelocity);
+  if (fields.has("waypoints")) motion.path = read_path(fields, motion);
   if (fields.has("quaternion")) {
     const Eigen::VectorXd wxyz = fields.numbers("quaternion", 4, 4, {-1.001, 1.001});
     if (std::abs(wxyz.norm() - 1.0) > 1e-3) fields.fail("quaternion", "must have length 1 (order w x y z)");

@@ -3,8 +3,19 @@
 namespace sidestep::sim {
 namespace {
 
+void translate(Motion& motion, double dt_s) {
+  if (!motion.path) {
+    motion.position_m += motion.velocity_mps * dt_s;
+    return;
+  }
+  motion.path_s += dt_s;
+  const Waypoint now = along(*motion.path, motion.path_s);
+  motion.position_m = now.position_m;
+  motion.velocity_mps = now.velocity_mps;
+}
+
 void move(Motion& motion, double dt_s) {
-  motion.position_m += motion.velocity_mps * dt_s;
+  translate(motion, dt_s);
   const double speed_radps = motion.angular_velocity_radps.norm();
   if (speed_radps <= 0.0) return;
   const Eigen::AngleAxisd turn(speed_radps * dt_s, motion.angular_velocity_radps / speed_radps);

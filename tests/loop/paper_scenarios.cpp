@@ -44,7 +44,7 @@ Figures play(const Scenario& scenario, const PaperGains& gains) {
   Model model = test::lwa3_model("paper");
   model.settings.paper = gains;
   ClosedLoop loop(model, test::home_rad());
-  check(loop.run_until(Mode::kHold, 1.0), "%s", loop.message().c_str());
+  check(loop.run_until(Mode::kHold, 1.0), "%s", loop.last.report.message);
   loop.target.position_m = scenario.target_m;
   loop.target.velocity_mps = scenario.target_mps;
   loop.target_speaks = true;
@@ -57,7 +57,7 @@ Figures play(const Scenario& scenario, const PaperGains& gains) {
   for (int cycle = 0; cycle < std::lround(scenario.duration_s * 100); ++cycle) {
     figures.least_axis_m = std::min(figures.least_axis_m, least_axis_distance_m(loop));
     loop.cycle();
-    check(loop.mode() == Mode::kTrack, "cycle %d: %s", cycle, loop.message().c_str());
+    check(loop.mode() == Mode::kTrack, "cycle %d: %s", cycle, loop.last.report.message);
     if (cycle == std::lround(scenario.judged_s * 100)) figures.error_m = loop.last.report.target_distance_m;
     figures.fastest_radps = std::max(figures.fastest_radps, loop.arm.velocity_radps.cwiseAbs().maxCoeff());
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "firmware/io/config.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
 
 namespace sidestep::test {
 
@@ -25,7 +27,7 @@ void ClosedLoop::Sent<Message>::send(const Message& now, double now_s) {
 
 Inputs ClosedLoop::receive() {
   ++periods_;
-  arm.utime = static_cast<int64_t>(std::llround(now_s() * 1e6));
+  arm.utime = static_cast<int64_t>(std::llround(now_s() * 1e6)) + arm_clock_offset_us;
   if (arm_speaks) sent_arm_.send(arm, now_s());
   if (target_speaks) sent_target_.send(target, now_s());
   if (obstacles_speak) sent_obstacles_.send(*obstacles, now_s());
@@ -48,6 +50,8 @@ void ClosedLoop::follow(const Result& result) {
   const double period_s = model.settings.period_s();
   arm.position_rad += arm.velocity_radps * period_s;
   target.position_m += target.velocity_mps * period_s;
+  if (const Vector3 turn = target.angular_velocity_radps * period_s; turn.norm() > 0.0)
+    target.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
   for (int i = 0; i < obstacles->count; ++i) {
     Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(i)];
     obstacle.capsule = moved(obstacle, period_s);
@@ -75,6 +79,26 @@ Obstacle& ClosedLoop::add_sphere(const Vector3& position_m, const Vector3& veloc
   Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(obstacles->count)];
   obstacle = {obstacles->count++, {position_m, position_m, radius_m}, velocity_mps, Vector3::Zero()};
   return obstacle;
+}
+
+ClosedLoop at_home(const std::string& law) {
+  ClosedLoop loop(lwa3_model(law), home_rad());
+  loop.target.position_m = Vector3(-0.328, 0.15, 0.8);
+  return loop;
+}
+
+ClosedLoop tracking(const std::string& law) {
+  ClosedLoop loop = at_home(law);
+  loop.target_speaks = true;
+  check(loop.run_until(Mode::kTrack, 1.0), "%s", loop.last.report.message);
+  loop.run(0.3);
+  check(loop.mode() == Mode::kTrack && loop.speed_radps() > 0.05, "%s at %g rad/s", loop.last.report.message,
+        loop.speed_radps());
+  return loop;
+}
+
+void check_stream(const ClosedLoop& loop) {
+  check(loop.commands.complaint().empty(), "%s", loop.commands.complaint().c_str());
 }
 
 }  // namespace sidestep::test

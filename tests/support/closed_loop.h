@@ -28,6 +28,7 @@ class ClosedLoop {
   bool arm_speaks = true, target_speaks = false, obstacles_speak = true;
   bool stop = false;
   int skipped = 0;
+  int64_t arm_clock_offset_us = 0;
 
   void cycle();
   void run(double duration_s);
@@ -40,7 +41,9 @@ class ClosedLoop {
 
   double now_s() const { return static_cast<double>(periods_) * model.settings.period_s(); }
   Mode mode() const { return last.report.mode; }
-  std::string message() const { return last.report.message; }
+  bool says(const std::string& words) const {
+    return std::string(last.report.message).find(words) != std::string::npos;
+  }
   double speed_radps() const { return arm.velocity_radps.norm(); }
 
   /// Adds a sphere and returns it.
@@ -59,5 +62,14 @@ class ClosedLoop {
   Sent<Target> sent_target_;
   Sent<ObstacleSet> sent_obstacles_;
 };
+
+/// The LWA3 at home among no obstacles, with a target 20 cm away that is not sent yet.
+ClosedLoop at_home(const std::string& law);
+
+/// The same, on its way to the target.
+ClosedLoop tracking(const std::string& law);
+
+/// Fails the test when a command was one that the arm cannot follow.
+void check_stream(const ClosedLoop& loop);
 
 }  // namespace sidestep::test

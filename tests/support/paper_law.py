@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/ usr / bin / env python3
 """The paper's law for the LWA3 in NumPy, written from the law's description alone: a second opinion on the C++.
 
   paper_law.py table                        the paper's three simulations, by reading of V in X = V + F T
@@ -8,9 +8,9 @@
 Columns of `cases`, one header line, SI units, base frame (numbers but for the last):
   q1..q7, qd1..qd7                   measured joint position and velocity
   target_x..z, target_vx..vz         position and velocity of the target
-  tracks_orientation                 1: the task is 6-D, target_q* and target_w* count; 0: position only
-  target_qw..qz, target_wx..wz       orientation (w x y z) and angular velocity of the target
-  planned                            1: V of item 4 is planned_v; 0: V is the measured tool velocity
+  tracks_orientation                 1: the task is 6-D, target_q* and target_w* count;
+0 : position only target_qw..qz,
+    target_wx..wz orientation(w x y z) and angular velocity of the target planned 1 : V of item 4 is planned_v; 0: V is the measured tool velocity
   planned_vx..vz                     X of the previous cycle (zero when not planned)
   obstacles                          0 to 4, how many of the following count (the rest are zero)
   o1_x..z, o1_vx..vz, .. o4_vz       centre and velocity of each obstacle
@@ -55,9 +55,7 @@ SCENARIOS = {
                     target=dict(position_m=[0.1, 0.4, 0.8], velocity_mps=[0.2, 0, 0]),
                     published=dict(axis_distance_m=0.1711, final_distance_m=0.001)),
 }
-
-
-# The arm
+#The arm
 
 def forward(q_rad):
     """Craig D-H. Returns (axes 7x3, origins 7x3, tool point 3, tool rotation 3x3), base frame."""
@@ -94,8 +92,7 @@ def axis_distances(arm, obstacles):
     """One list per obstacle: distance of its centre to the axis of each moving segment, m."""
     return [[np.linalg.norm(nearest_on(s, o["p"]) - o["p"]) for s in moving_segments(arm)] for o in obstacles]
 
-
-# The law. Obstacles are dicts of p, v; a target is p, v and, when the orientation counts, quaternion and w.
+#The law.Obstacles are dicts of p, v; a target is p, v and, when the orientation counts, quaternion and w.
 
 def attraction(target, tool, v_tool, k):                                                            # item 1
     return k["k_pos_per_s2"] * (target["p"] - tool) + k["k_vel_per_s"] * (target["v"] - v_tool)
@@ -188,8 +185,7 @@ def limited(qd_radps, q_rad, previous_radps, limits):
     down, up = np.minimum(np.sqrt(2 * limits["acceleration_radps2"] * room), room / PERIOD_S)
     return np.clip(qd, -down, up)
 
-
-# Simulation with an ideal plant
+#Simulation with an ideal plant
 
 def columns_of(obstacle_count):
     """The header of build/sim --csv."""
@@ -231,7 +227,8 @@ def table():
     print("| | A, error at 2.3 s | B, least distance; error at 8 s | C, least distance; error at 2.8 s |")
     print("|---|---|---|---|")
     for name, changes in readings:
-        error_m, least_m = {}, {}
+        error_m, least_m = {}, {
+}
         for key, scenario in SCENARIOS.items():
             names, rows = simulate(scenario, PARAMETERS | changes)
             error_m[key] = rows[-1][names.index("target_distance_m")]
@@ -240,8 +237,7 @@ def table():
               f"| {least_m['paper-b']:.4f} m; {error_m['paper-b'] * 1e3:.3f} mm "
               f"| {least_m['paper-c']:.4f} m; {error_m['paper-c'] * 1e3:.2f} mm |")
 
-
-# Random states for the C++ to be held to
+#Random states for the C++ to be held to
 
 KINDS = ["anywhere", "home", "near home", "stretched", "nearly stretched", "upright", "obstacle at link",
          "obstacle at tool", "obstacle on tool", "fast", "planned", "orientation", "orientation at home",

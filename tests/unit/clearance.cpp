@@ -39,7 +39,8 @@ Obstacle random_obstacle(Random& random, double reach_m) {
   obstacle.id = random.index(1000000);
   const Vector3 centre = random.inside(-reach_m, reach_m);
   const Vector3 half = random.chance(0.5) ? Vector3(random.inside(-0.3, 0.3)) : Vector3(Vector3::Zero());
-  obstacle.capsule = {centre - half, centre + half, random.uniform(0.01, 0.1)};
+  const double largest_m = random.chance(0.1) ? 0.4 * reach_m : 0.1;
+  obstacle.capsule = {centre - half, centre + half, random.uniform(0.01, largest_m)};
   obstacle.velocity_mps = random.inside(-1, 1);
   obstacle.angular_velocity_radps = random.inside(-2, 2);
   return obstacle;

@@ -54,7 +54,7 @@ void whatever_happens_every_command_can_be_followed(void**) {
         loop.cycle();
         ++modes[static_cast<int>(loop.mode())];
         check(loop.mode() != Mode::kFault || loop.last.report.fault == Fault::kArmStateLost,
-              "%s, seed %u, cycle %d: %s", law, seed, cycle, loop.message().c_str());
+              "%s, seed %u, cycle %d: %s", law, seed, cycle, loop.last.report.message);
       }
       check_stream(loop, law, seed);
       check(modes[1] > 10 && modes[2] > 100 && modes[3] > 10, "%s, seed %u: %ld holding, %ld tracking, %ld braking",

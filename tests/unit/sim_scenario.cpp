@@ -76,6 +76,26 @@ void a_complete_scenario_arrives_value_by_value(void**) {
   check_near(*s.published.axis_distance_m, 0.2, 0);
 }
 
+void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
+  const std::string two = ", waypoints: [[0.05, 1, 2, 3.5, 4, 5, 6], [0.2, 7, 8, 9, 0, 0, -1]]";
+  const World target_curves = load(changed("velocity_mps: [0, 0.1, 0]", "velocity_mps: [0, 0.1, 0]" + two)).world;
+  const World bar_curves = load(changed("velocity_mps: [0, 0, -1]", "velocity_mps: [0, 0, -1]" + two)).world;
+  assert_null(target_curves.obstacles[1].motion.path.get());
+  assert_null(bar_curves.target.motion.path.get());
+  for (const Motion& motion : {target_curves.target.motion, bar_curves.obstacles[1].motion}) {
+    assert_non_null(motion.path.get());
+    const Path& path = *motion.path;
+    assert_int_equal(path.size(), 3);
+    check_near(path[0].t_s, 0, 0);
+    check_near(path[0].position_m, motion.position_m, 0);
+    check_near(path[0].velocity_mps, motion.velocity_mps, 0);
+    check_near(path[1].t_s, 0.05, 0);
+    check_near(path[1].position_m, Vector3d(1, 2, 3.5), 0);
+    check_near(path[1].velocity_mps, Vector3d(4, 5, 6), 0);
+    check_near(path[2].velocity_mps, Vector3d(0, 0, -1), 0);
+  }
+}
+
 struct Mistake {
   const char* from;
   const char* to;
@@ -115,6 +135,47 @@ const Mistake kMistakes[] = {
     {"position_m: [1, 2, 3]", "position_m: [1, 2, .nan]", "target.position_m[2]", "finite"},
     {"position_m: [1, 2, 3]", "position_m: [1, 2, 3e9]", "target.position_m[2]", "from -1000 to 1000"},
     {"velocity_mps: [0, 0.1, 0], ", "", "target.velocity_mps", "missing"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [], ", "target.waypoints", "at least one"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: 3, ", "target.waypoints", "list of lists"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: {a: 1}, ", "target.waypoints",
+     "list of lists"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [1, 2, 3, 4, 5, 6, 7], ",
+     "target.waypoints[0]", "list of 7 numbers"},
+    {"velocity_mps: [0, 0.1, 0], ",
+     "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 0], [2, 1, 2, 3, 0, 0]], ", "target.waypoints[1]",
+     "list of 7 numbers"},
+    {"velocity_mps: [0, 0.1, 0], ",
+     "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 0], [2, 1, 2, 3, 0, 0, 0, 0]], ", "target.waypoints[1]",
+     "list of 7 numbers"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, .nan, 0, 0, 0]], ",
+     "target.waypoints[0][3]", "finite"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[.inf, 1, 2, 3, 0, 0, 0]], ",
+     "target.waypoints[0][0]", "finite"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, fast, 0]], ",
+     "target.waypoints[0][5]", "finite number"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, [0]]], ",
+     "target.waypoints[0][6]", "finite number"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3e9, 0, 0, 0]], ",
+     "target.waypoints[0][3]", "from -1000 to 1000"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 101]], ",
+     "target.waypoints[0][6]", "from -100 to 100"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[-1, 1, 2, 3, 0, 0, 0]], ",
+     "target.waypoints[0][0]", "from 0"},
+    {"velocity_mps: [0, 0.1, 0], ", "velocity_mps: [0, 0.1, 0], waypoints: [[0, 1, 2, 3, 0, 0, 0]], ",
+     "target.waypoints[0][0]", "must increase"},
+    {"velocity_mps: [0, 0.1, 0], ",
+     "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 0], [1, 1, 2, 3, 0, 0, 0]], ", "target.waypoints[1][0]",
+     "must increase"},
+    {"velocity_mps: [0, 0.1, 0], ",
+     "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 0], [0.5, 1, 2, 3, 0, 0, 0]], ",
+     "target.waypoints[1][0]", "must increase"},
+    {"velocity_mps: [0, 0.1, 0], ",
+     "velocity_mps: [0, 0.1, 0], waypoints: [[1, 1, 2, 3, 0, 0, 0], [1.0000000001, 1, 2, 3, 0, 0, 0]], ",
+     "target.waypoints[1][0]", "must increase"},
+    {"velocity_mps: [0, 0.1, 0]", "waypoints: [[1, 1, 2, 3, 0, 0, 0]]", "target.velocity_mps", "missing"},
+    {"position_m: [1, 2, 3]", "waypoints: [[1, 1, 2, 3, 0, 0, 0]]", "target.position_m", "missing"},
+    {"velocity_mps: [0, 0, -1]", "velocity_mps: [0, 0, -1], waypoints: [[1, 1, 2, 3, 0, 0, 0], [2]]",
+     "obstacles[1].waypoints[1]", "list of 7 numbers"},
     {"quaternion: [0, 1, 0, 0], ", "", "target.angular_velocity_radps", "needs a quaternion"},
     {"quaternion: [0, 1, 0, 0]", "quaternion: [0, 0, 0, 0]", "target.quaternion", "length 1"},
     {"quaternion: [0, 1, 0, 0]", "quaternion: [0, 1, 0]", "target.quaternion", "4 numbers"},
@@ -204,6 +265,7 @@ void the_three_scenarios_of_the_paper(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_complete_scenario_arrives_value_by_value),
+      cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
       cmocka_unit_test(every_mistake_is_one_line_naming_file_and_key),
       cmocka_unit_test(files_that_are_no_scenario_are_refused_in_one_line),
       cmocka_unit_test(the_rate_is_100_hz_unless_said_otherwise),

@@ -51,6 +51,85 @@ void many_small_steps_lead_to_the_same_place(void**) {
   check_near(a.orientation.coeffs(), b.orientation.coeffs(), 1e-12);
 }
 
+/// Out and up, back to where it was, and on; unevenly spaced.
+Motion curved_motion() {
+  const Path path{{0, {1, 2, 3}, {0.2, 0, 0}}, {0.5, {1.1, 2, 3.2}, {0, 0, 0.4}}, {0.8, {1, 2, 3}, {-0.3, 0.1, 0}}};
+  Motion motion;
+  motion.position_m = path.front().position_m;
+  motion.velocity_mps = path.front().velocity_mps;
+  motion.path = std::make_shared<const Path>(path);
+  return motion;
+}
+
+Motion curved_after(double dt_s) {
+  World world;
+  world.obstacles = {{1, {Shape::kSphere, {0.05, 0, 0}}, curved_motion()}};
+  return later(world, dt_s).obstacles[0].motion;
+}
+
+void a_path_goes_through_its_waypoints(void**) {
+  const Motion start = curved_motion();
+  for (const Waypoint& waypoint : *start.path) {
+    const Motion motion = curved_after(waypoint.t_s);
+    check_near(motion.position_m, waypoint.position_m, 0);
+    check_near(motion.velocity_mps, waypoint.velocity_mps, 0);
+    const Motion before = curved_after(waypoint.t_s - 1e-9);
+    check_near(before.position_m, waypoint.position_m, 1e-9);
+    check_near(before.velocity_mps, waypoint.velocity_mps, 1e-7);
+  }
+}
+
+void half_way_between_two_waypoints(void**) {
+  // Mean of the positions + duration / 8 * difference of the velocities; 1.5 mean velocity - quarter of their sum.
+  const Motion motion = curved_after(0.25);
+  check_near(motion.position_m, Eigen::Vector3d(1.05 + 0.0125, 2, 3.1 - 0.025), 1e-15);
+  check_near(motion.velocity_mps, Eigen::Vector3d(0.3 - 0.05, 0, 0.6 - 0.1), 1e-15);
+}
+
+void a_cubic_is_followed_exactly(void**) {
+  const auto cubic = [](double t) -> Waypoint { return {t, {t * t * t, 1 - t * t, 2 * t}, {3 * t * t, -2 * t, 2}}; };
+  const Path path{cubic(0), cubic(0.3), cubic(1)};
+  for (double t_s = 0; t_s < 1; t_s += 0.01) {
+    check_near(along(path, t_s).position_m, cubic(t_s).position_m, 1e-15);
+    check_near(along(path, t_s).velocity_mps, cubic(t_s).velocity_mps, 1e-14);
+  }
+}
+
+void the_velocity_on_a_path_is_the_derivative_of_the_position(void**) {
+  constexpr double kStep_s = 1e-5;
+  for (double t_s = 0.005; t_s < 1.2; t_s += 0.01) {
+    const Eigen::Vector3d difference_m =
+        curved_after(t_s + kStep_s).position_m - curved_after(t_s - kStep_s).position_m;
+    check_near(curved_after(t_s).velocity_mps, difference_m / (2 * kStep_s), 1e-8);
+  }
+}
+
+void after_its_end_a_path_goes_straight_on(void**) {
+  const Motion motion = curved_after(2.8);
+  check_near(motion.position_m, Eigen::Vector3d(1 - 0.6, 2 + 0.2, 3), 1e-15);
+  check_near(motion.velocity_mps, Eigen::Vector3d(-0.3, 0.1, 0), 0);
+  const Path to_rest{{0, {0, 0, 0}, {1, 0, 0}}, {1, {0.5, 0, 0}, {0, 0, 0}}};
+  check_near(along(to_rest, 100).position_m, Eigen::Vector3d(0.5, 0, 0), 0);
+  check_near(along(to_rest, 100).velocity_mps, Eigen::Vector3d(0, 0, 0), 0);
+}
+
+void a_target_follows_its_path_and_turns_at_its_constant_rate(void**) {
+  World world;
+  world.target.motion = curved_motion();
+  world.target.motion.angular_velocity_radps = {0, 0, M_PI};
+  const Motion motion = later(world, 0.5).target.motion;
+  check_near(motion.position_m, Eigen::Vector3d(1.1, 2, 3.2), 0);
+  check_near(motion.orientation * Eigen::Vector3d::UnitX(), Eigen::Vector3d(0, 1, 0), 1e-15);
+}
+
+void many_small_steps_along_a_path_lead_to_the_same_place(void**) {
+  World stepped;
+  stepped.target.motion = curved_motion();
+  for (int i = 0; i < 700; ++i) stepped = later(stepped, 0.001);
+  check_near(stepped.target.motion.position_m, curved_after(0.7).position_m, 1e-12);
+  check_near(stepped.target.motion.velocity_mps, curved_after(0.7).velocity_mps, 1e-12);
+}
+
 }  // namespace
 
 int main() {
@@ -59,6 +138,13 @@ int main() {
       cmocka_unit_test(positions_follow_constant_velocities),
       cmocka_unit_test(a_half_turn_a_second_points_the_other_way_after_a_second),
       cmocka_unit_test(many_small_steps_lead_to_the_same_place),
+      cmocka_unit_test(a_path_goes_through_its_waypoints),
+      cmocka_unit_test(half_way_between_two_waypoints),
+      cmocka_unit_test(a_cubic_is_followed_exactly),
+      cmocka_unit_test(the_velocity_on_a_path_is_the_derivative_of_the_position),
+      cmocka_unit_test(after_its_end_a_path_goes_straight_on),
+      cmocka_unit_test(a_target_follows_its_path_and_turns_at_its_constant_rate),
+      cmocka_unit_test(many_small_steps_along_a_path_lead_to_the_same_place),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

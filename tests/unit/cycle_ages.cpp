@@ -1,0 +1,143 @@
+#include <vector>
+
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+
+using namespace sidestep;
+using test::check_stream;
+using test::ClosedLoop;
+using test::tracking;
+
+namespace {
+
+const char* const kLaws[] = {"paper", "sidestep"};
+
+void an_old_target_is_held_and_a_new_one_tracked_again(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = tracking(law);
+    loop.target_speaks = false;
+    loop.run(0.25);
+    assert_true(loop.mode() == Mode::kTrack);
+    loop.run(0.02);
+    assert_true(loop.mode() == Mode::kHold && loop.says("target is too old"));
+    loop.run(0.5);
+    check_near(loop.speed_radps(), 0.0, 0);
+    loop.target_speaks = true;
+    loop.run(0.1);
+    assert_true(loop.mode() == Mode::kTrack);
+    assert_true(loop.speed_radps() > 0);
+    check_stream(loop);
+  }
+}
+
+void old_obstacles_brake_and_grow(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = tracking(law);
+    loop.add_sphere(Vector3(1.5, 0, 0.5), Vector3(0, 0, 0));
+    loop.run(0.1);
+    loop.obstacles_speak = false;
+    loop.run(0.1);
+    assert_true(loop.mode() == Mode::kTrack);
+    const double before_m = loop.last.report.clearance_m;
+    loop.run(0.02);
+    assert_true(loop.mode() == Mode::kBrake && loop.says("obstacles are too old"));
+    loop.run(0.5);
+    check_near(loop.speed_radps(), 0.0, 0);
+    const double shrunk_m = before_m - loop.last.report.clearance_m;
+    check(shrunk_m > 0.6 * loop.model.settings.obstacle_speed_bound_mps - 0.1, "the obstacle grew by %g m", shrunk_m);
+    loop.obstacles_speak = true;
+    loop.run(0.1);
+    assert_true(loop.mode() == Mode::kTrack);
+    check_stream(loop);
+  }
+}
+
+void a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = tracking(law);
+    loop.arm_speaks = false;
+    loop.run(0.03);
+    assert_true(loop.mode() == Mode::kTrack);
+    loop.run(0.01);
+    assert_true(loop.mode() == Mode::kBrake && loop.says("arm state is too old"));
+    loop.arm_speaks = true;
+    loop.run(0.02);
+    assert_true(loop.mode() == Mode::kTrack);
+    loop.arm_speaks = false;
+    loop.run(0.11);
+    assert_true(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateLost);
+    loop.run(1.0);
+    assert_false(loop.last.commanding);
+    loop.arm_speaks = true;
+    loop.run(0.49);
+    assert_true(loop.mode() == Mode::kFault && loop.says("consistent"));
+    loop.run(0.04);
+    assert_true(loop.mode() == Mode::kTrack && loop.last.report.fault == Fault::kNone);
+    check_stream(loop);
+  }
+}
+
+void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = tracking(law);
+    loop.arm.position_rad[0] += 0.5;
+    loop.cycle();
+    assert_true(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateInconsistent);
+    loop.run(0.48);
+    assert_true(loop.mode() == Mode::kFault);
+    loop.run(0.05);
+    assert_true(loop.mode() == Mode::kTrack);
+    loop.run(8.0);
+    check(loop.last.report.target_distance_m < 2e-3, "%s: %g m left", law, loop.last.report.target_distance_m);
+    check_stream(loop);
+  }
+}
+
+void an_arm_whose_clock_stands_still_or_goes_back_is_a_fault(void**) {
+  for (const int64_t offset_us : {-10000, -20000, -50000}) {
+    ClosedLoop loop = tracking("paper");
+    loop.arm_clock_offset_us = offset_us;
+    loop.cycle();
+    check(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateInconsistent, "%ld us: %s",
+          offset_us, loop.last.report.message);
+    loop.run(0.6);
+    assert_true(loop.mode() == Mode::kTrack);
+  }
+}
+
+/// What moves is reported now and then only; in between it is moved on by its velocities.
+void target_and_obstacles_are_moved_forward_to_the_present(void**) {
+  for (const char* law : kLaws) {
+    const auto play = [&](int every) {
+      ClosedLoop loop = tracking(law);
+      loop.target.velocity_mps = Vector3(0.05, 0.02, -0.03);
+      loop.target.tracks_orientation = true;
+      loop.target.angular_velocity_radps = Vector3(0.1, 0.2, -0.1);
+      loop.add_sphere(Vector3(-0.1, 0.4, 0.9), Vector3(0, -0.1, 0));
+      std::vector<double> seen;
+      for (int i = 0; i < 100; ++i) {
+        loop.target_speaks = loop.obstacles_speak = i % every == 0;
+        loop.cycle();
+        for (const double velocity : loop.last.command.velocity_radps) seen.push_back(velocity);
+        seen.push_back(loop.last.report.clearance_m);
+        seen.push_back(loop.last.report.target_distance_m);
+      }
+      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(seen.data(), static_cast<Eigen::Index>(seen.size())));
+    };
+    check_near_because(play(10), play(1), 1e-6, "%s", law);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(an_old_target_is_held_and_a_new_one_tracked_again),
+      cmocka_unit_test(old_obstacles_brake_and_grow),
+      cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
+      cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
+      cmocka_unit_test(an_arm_whose_clock_stands_still_or_goes_back_is_a_fault),
+      cmocka_unit_test(target_and_obstacles_are_moved_forward_to_the_present),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
