@@ -48,10 +48,11 @@ Wish ask_law(const Model& model, const Situation& situation, const State& state)
   return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
 }
 
-/// How far the command of a joint has to close in on the measured arm, rad: nothing while it follows.
+/// How far the command of a joint has to close in on the measured arm, rad: nothing while it follows. It begins at half
+/// the following error, so that a command that can catch up is never held back by it.
 double catch_up(const Model& model, const State& state, const ArmState& arm, int joint) {
   const double error_rad = arm.position_rad[joint] - state.position_rad[joint];
-  return std::abs(error_rad) > model.settings.following_error_rad ? error_rad : 0.0;
+  return std::abs(error_rad) > 0.5 * model.settings.following_error_rad ? error_rad : 0.0;
 }
 
 /// Where the velocity leads from the last commanded position. Should the arm have fallen too far behind or been moved,

@@ -43,15 +43,20 @@ class Play {
     pause(10.0);  // what was sent before is long ago: a fresh start
   }
 
-  /// Sends the world, then the arm, and waits for the answer.
+  /// One cycle: the world, then the arm, then the answer.
   void cycle() {
+    send_world();
+    answer();
+  }
+
+  /// Target and obstacles of the next cycle.
+  void send_world() {
     utime_ += kPeriod_us;
     const double t_s = 0.01 * static_cast<double>(cycles_++);
-    peer.send("TARGET", target_message(utime_, Vector3(-0.1, 0.3 + 0.05 * std::sin(t_s), 0.8),
-                                       Vector3(0, 0.05 * std::cos(t_s), 0)));
+    const Vector3 place_m(-0.1, 0.3 + 0.05 * std::sin(t_s), 0.8), velocity_mps(0, 0.05 * std::cos(t_s), 0);
+    peer.send("TARGET", target_message(utime_, place_m, velocity_mps));
     const Vector3 v(0, -0.05, 0);
     peer.send("OBSTACLES", obstacles_message(utime_, {test::sphere(1, Vector3(0.1, 0.5, 0.6) + t_s * v, 0.05, v)}));
-    answer();
   }
 
   /// Sends the arm and waits for the answer.
@@ -161,38 +166,50 @@ struct Transcript {
   int64_t rejected = 0, hostile = 0;
 };
 
+/// A message that looks right but for one thing, and its channel.
+std::pair<std::string, Bytes> hostile_message(Random& random, int64_t utime) {
+  const struct {
+    const char* channel;
+    Bytes bytes;
+    size_t number_at;  ///< the first double
+  } good[] = {
+      {"TARGET", test::encoded(target_message(utime, Vector3(9, 9, 9), Vector3(0, 0, 0))), 16},
+      {"OBSTACLES",
+       test::encoded(obstacles_message(utime, {test::sphere(9, Vector3(0, 0.3, 0.8), 0.2, Vector3(0, 0, 0))})), 25},
+      {"ARM_STATE", test::encoded(arm_state_message(utime, JointVector::Ones(7), JointVector::Ones(7))), 20},
+  };
+  auto [channel, bytes, number_at] = good[random.index(3)];
+  switch (random.index(4)) {
+    case 0:
+      bytes.resize(static_cast<size_t>(random.index(static_cast<int>(bytes.size()))));
+      break;
+    case 1:
+      bytes[static_cast<size_t>(random.index(8))] ^= 1;
+      break;
+    case 2:
+      bytes.resize(bytes.size() + static_cast<size_t>(1 + random.index(50000)));
+      break;
+    default:
+      bytes[number_at] = 0x7f, bytes[number_at + 1] = 0xff;
+      break;  // NaN
+  }
+  return {channel, bytes};
+}
+
 /// Plays the same 400 cycles; when hostile, with messages in between that must not change anything.
 Transcript record(const std::string& law, bool hostile) {
   Play play(law);
   Random random(1);
   Transcript transcript;
-  const int64_t rejected_before = [&] {
-    play.cycle();
-    return play.peer.statuses.back().rejected_messages;
-  }();
-  const Bytes target = test::encoded(target_message(play.utime(), Vector3(9, 9, 9), Vector3(0, 0, 0)));
+  play.cycle();
+  const int64_t rejected_before = play.peer.statuses.back().rejected_messages;
   for (int i = 0; i < 400; ++i) {
-    for (int n = hostile ? random.index(4) : 0; n > 0; --n) {
-      Bytes bytes = target;
-      switch (random.index(4)) {
-        case 0:
-          bytes.resize(static_cast<size_t>(random.index(static_cast<int>(bytes.size()))));
-          break;
-        case 1:
-          bytes[static_cast<size_t>(random.index(8))] ^= 1;
-          break;
-        case 2:
-          bytes.resize(bytes.size() + static_cast<size_t>(1 + random.index(50000)));
-          break;
-        default:
-          bytes[16] = 0x7f, bytes[17] = 0xff;
-          break;  // the target's x: NaN
-      }
-      const char* const channels[] = {"TARGET", "OBSTACLES", "ARM_STATE"};
-      play.peer.send_bytes(channels[random.index(3)], bytes);
-      ++transcript.hostile;
+    play.send_world();
+    for (int n = hostile ? random.index(4) : 0; n > 0; --n, ++transcript.hostile) {
+      const auto [channel, bytes] = hostile_message(random, play.utime());
+      play.peer.send_bytes(channel, bytes);
     }
-    play.cycle();
+    play.answer();
   }
   transcript.commands = play.peer.command_bytes;
   for (controller_status_t& status : play.peer.statuses) {

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""Hold one lockstep step of build/controller --law paper to paper_law.py on random states, over LCM.
+
+Limits are set wide, so that the arm may be anywhere from one cycle to the next. Exit code 0: all within 1e-6 rad/s.
+"""
+import csv
+import io
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import lcm
+import numpy as np
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "build/lcm/python"))
+from sidestep import controller_status_t, joint_command_t, joint_state_t, obstacle_t, obstacles_t, target_t
+
+TOLERANCE_RADPS = 1e-6
+PERIOD_US = 10_000
+CYCLES_TO_TRACK = 60
+WIDE = {"velocity_radps": 1e5, "acceleration_radps2": 1e8, "lower_rad": -1e6, "upper_rad": 1e6}
+
+
+def numbers(row):
+    return {key: float(value or 0) for key, value in row.items() if key != "kind"}
+
+
+def cases(seed, count):
+    """Random states without the memory that the `planned` reading of V has, as dictionaries of numbers."""
+    command = [sys.executable, ROOT / "tests/support/paper_law.py", "cases", "--seed", str(seed), "--count", str(count)]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return [row for row in map(numbers, csv.DictReader(io.StringIO(text))) if row["planned"] == 0]
+
+
+def values(row, prefix, suffixes):
+    return [row[f"{prefix}{suffix}"] for suffix in suffixes]
+
+
+def messages(row, utime):
+    target = target_t()
+    target.utime, target.tracks_orientation = utime, row["tracks_orientation"] == 1
+    target.position, target.velocity = values(row, "target_", "xyz"), values(row, "target_v", "xyz")
+    target.quaternion, target.angular_velocity = values(row, "target_q", "wxyz"), values(row, "target_w", "xyz")
+    obstacles = obstacles_t()
+    obstacles.utime, obstacles.num_obstacles = utime, int(row["obstacles"])
+    for i in range(1, obstacles.num_obstacles + 1):
+        obstacle = obstacle_t()
+        obstacle.id, obstacle.size = i, [0.05, 0.0, 0.0]
+        obstacle.position, obstacle.velocity = values(row, f"o{i}_", "xyz"), values(row, f"o{i}_v", "xyz")
+        obstacles.obstacles.append(obstacle)
+    arm = joint_state_t()
+    arm.utime, arm.num_joints = utime, 7
+    arm.joint_position, arm.joint_velocity = values(row, "q", range(1, 8)), values(row, "qd", range(1, 8))
+    return {"TARGET": target, "OBSTACLES": obstacles, "ARM_STATE": arm}
+
+
+def ask(wire, answers, row, utime):
+    """One cycle; returns the commanded joint velocity."""
+    answers.clear()
+    for channel, message in messages(row, utime).items():
+        wire.publish(channel, message.encode())
+    end = time.monotonic() + 5.0
+    while "CONTROLLER_STATUS" not in answers:
+        wire.handle_timeout(100)
+        if time.monotonic() > end:
+            sys.exit("law_over_lcm: the controller does not answer")
+    return np.array(joint_command_t.decode(answers["ARM_COMMAND"]).joint_velocity)
+
+
+def compare(wire, rows):
+    answers, utime, worst = {}, PERIOD_US, 0.0
+    wire.subscribe("ARM_COMMAND|CONTROLLER_STATUS", answers.__setitem__)
+    for row in [rows[0]] * CYCLES_TO_TRACK + rows:
+        utime += PERIOD_US
+        velocity = ask(wire, answers, row, utime)
+        if utime > (CYCLES_TO_TRACK + 1) * PERIOD_US:
+            mode = controller_status_t.decode(answers["CONTROLLER_STATUS"]).mode
+            if mode != controller_status_t.TRACK:
+                sys.exit(f"law_over_lcm: mode {mode} instead of TRACK")
+            worst = max(worst, np.abs(velocity - values(row, "expect_qd", range(1, 8))).max())
+    return worst
+
+
+def main():
+    config = yaml.safe_load((ROOT / "firmware/config/lwa3.yaml").read_text()) | {"limits": WIDE}
+    rows, url = cases(seed=77, count=400), sys.argv[1]
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+        yaml.safe_dump(config, file)
+        file.flush()
+        command = [ROOT / "build/controller", "--config", file.name, "--law", "paper", "--lockstep", "--lcm-url", url]
+        controller = subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=ROOT)
+        try:
+            time.sleep(0.5)
+            worst = compare(lcm.LCM(url), rows)
+        finally:
+            controller.terminate()
+            controller.wait()
+    print(f"{len(rows)} random states, largest difference {worst:.2e} rad/s")
+    sys.exit(not worst < TOLERANCE_RADPS)
+
+
+if __name__ == "__main__":
+    main()
