@@ -104,9 +104,15 @@ JointVector keep_clear(const Model& model, const Situation& situation, const Arm
   const Mode mode = state.supervision.mode;
   if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
   if (mode != Mode::kTrack && mode != Mode::kHold) return wish.velocity_radps;
-  const Surroundings around{
-      model.arm,           situation.posture,   arm.position_rad, state.velocity_radps,
-      situation.clearance, situation.obstacles, model.self_pairs, comfort_weight(settings.shield, situation, mode)};
+  const Surroundings around{model.arm,
+                            situation.posture,
+                            arm.position_rad,
+                            state.velocity_radps,
+                            situation.clearance,
+                            situation.obstacles,
+                            model.self_pairs,
+                            settings.period_s(),
+                            comfort_weight(settings.shield, situation, mode)};
   const VelocityRange lasting =
       lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
   const TaskJacobian jacobian = tool_jacobian(situation.posture, situation.target.tracks_orientation ? 6 : 3);

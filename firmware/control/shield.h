@@ -17,6 +17,7 @@ struct Surroundings {
   const Clearance& clearance;
   const ObstacleView& obstacles;
   const std::vector<std::pair<int, int>>& self_pairs;
+  double period_s;
   double comfort_weight;  ///< at present, s2/m2
 };
 

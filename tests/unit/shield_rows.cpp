@@ -1,0 +1,312 @@
+#include "firmware/control/shield_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "firmware/model/self_pairs.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+constexpr double kStep_rad = 1e-6;
+constexpr double kTolerance = 1e-6;
+constexpr double kKink_m = 0.01;  // nearer than this to each other axes bend the distance too much to differentiate
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+const ShieldSettings kSettings;
+
+VelocityRange range_of(double radps) {
+  return {JointVector::Constant(7, -radps), JointVector::Constant(7, radps)};
+}
+
+/// Everything that is said of the rows of one posture among obstacles.
+struct Scene {
+  JointVector q_rad, last_radps = JointVector::Zero(7);
+  Posture posture;
+  std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
+  Clearance clearance;
+  Pairs self_pairs;
+
+  explicit Scene(const JointVector& q) : q_rad(q), posture(forward(lwa3(), q)) {}
+
+  void add(const Capsule& capsule, const Vector3& velocity_mps) {
+    set->obstacles[static_cast<size_t>(set->count)] = {set->count, capsule, velocity_mps, Vector3::Zero()};
+    ++set->count;
+  }
+  ShieldRows rows(const VelocityRange& range, bool hard_only = false) const {
+    const ObstacleView view{set.get(), 0.0, 0.0};
+    return make_rows(kSettings, {lwa3(), posture, q_rad, last_radps, clearance, view, self_pairs, 0.01, 1.0}, range,
+                     hard_only);
+  }
+  /// The rows of one pair, none of them dropped.
+  ShieldRows rows_of(const NearPair& pair, bool hard_only = false) {
+    clearance.near_count = 1;
+    clearance.near[0] = pair;
+    return rows(range_of(1e9), hard_only);
+  }
+};
+
+/// As slow as the gain says, and slow enough to brake within the room with half of what the joints have, after one more
+/// period at that speed.
+double hard_bound(const JointVector& row, double room_m) {
+  const double by_gain_mps = kSettings.hard_gain_per_s * room_m;
+  if (room_m <= 0.0) return std::min(3.0, -by_gain_mps);
+  const double b = 0.5 * row.cwiseAbs().dot(lwa3().limits.acceleration_radps2), period_s = 0.01;
+  return -std::min(by_gain_mps, -b * period_s + std::sqrt(b * b * period_s * period_s + 2.0 * b * room_m));
+}
+
+/// A link that turns about its own axis, say, cannot change the distance at all; such a row is left out if met.
+bool can_matter(const JointVector& by_joint) {
+  return by_joint.norm() > 1e-6;
+}
+
+/// Derivative of a distance by the joints, by central differences.
+JointVector slope(const JointVector& q_rad, const std::function<double(const Posture&)>& distance_m) {
+  JointVector by_joint(q_rad.size());
+  for (int i = 0; i < q_rad.size(); ++i) {
+    JointVector more = q_rad, less = q_rad;
+    more[i] += kStep_rad;
+    less[i] -= kStep_rad;
+    by_joint[i] = (distance_m(forward(lwa3(), more)) - distance_m(forward(lwa3(), less))) / (2.0 * kStep_rad);
+  }
+  return by_joint;
+}
+
+const LinkShape& shape_of(int index) {
+  return lwa3().shapes[static_cast<size_t>(index)];
+}
+
+/// An obstacle from deep in the link to the end of the range, a sphere or a capsule, at rest or not.
+Obstacle any_obstacle(const Capsule& link, Random& random) {
+  const Vector3 centre =
+      link.start + random.uniform(0, 1) * (link.end - link.start) + random.direction() * random.uniform(0, 0.4);
+  const Vector3 half = random.chance(0.5) ? random.inside(-0.2, 0.2) : Vector3(Vector3::Zero());
+  const Vector3 velocity_mps = random.chance(0.7) ? random.inside(-1, 1) : Vector3(Vector3::Zero());
+  return {0, {centre - half, centre + half, random.uniform(0, 0.15)}, velocity_mps, Vector3::Zero()};
+}
+
+NearPair pair_of(const Posture& posture, int shape, int index, const Obstacle& obstacle) {
+  const Capsule link = placed(posture, shape_of(shape));
+  NearPair pair{measure_pair(link, obstacle.capsule),
+                predict_approach(link, obstacle.capsule, obstacle.velocity_mps, kSettings.pass_horizon_s)};
+  pair.now.shape = shape;
+  pair.now.obstacle = index;
+  return pair;
+}
+
+int moving_shape(Random& random) {
+  int shape = 0;
+  while (shape_of(shape).body == 0) shape = random.index(static_cast<int>(lwa3().shapes.size()));
+  return shape;
+}
+
+void check_distance_rows(Scene& scene, const NearPair& pair, const Obstacle& obstacle, int trial, int (&seen)[2]) {
+  const JointVector expected = slope(scene.q_rad, [&](const Posture& posture) {
+    return measure_pair(placed(posture, shape_of(pair.now.shape)), obstacle.capsule).distance_m;
+  });
+  const ShieldRows rows = scene.rows_of(pair);
+  for (int i = 0; i < rows.count; ++i) {
+    const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
+    if (row.tier == Tier::kPass) continue;
+    check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.now.distance_m);
+    ++seen[row.tier == Tier::kComfort];
+  }
+}
+
+void rows_of_distances_are_their_slopes(void**) {
+  Random random(1);
+  int seen[2] = {}, inside = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    Scene scene(random.posture(lwa3()));
+    const int shape = moving_shape(random);
+    const Obstacle obstacle = any_obstacle(placed(scene.posture, shape_of(shape)), random);
+    scene.add(obstacle.capsule, obstacle.velocity_mps);
+    const NearPair pair = pair_of(scene.posture, shape, 0, obstacle);
+    if (pair.now.axis_distance_m < kKink_m || pair.now.distance_m > kSettings.range_m) continue;
+    check_distance_rows(scene, pair, obstacle, trial, seen);
+    if (pair.now.distance_m < 0.0) ++inside;
+  }
+  check(seen[0] > 2000 && seen[1] > 2000 && inside > 300, "%d hard, %d comfort, %d inside", seen[0], seen[1], inside);
+}
+
+/// d' >= -gain (d - clearance), for an obstacle that stays where it is; never a demand that no arm can meet.
+void the_bounds_of_distances_are_barriers(void**) {
+  Random random(2);
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.posture(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = any_obstacle(placed(scene.posture, shape_of(shape)), random);
+    obstacle.velocity_mps.setZero();
+    scene.add(obstacle.capsule, obstacle.velocity_mps);
+    const NearPair pair = pair_of(scene.posture, shape, 0, obstacle);
+    const ShieldRows rows = scene.rows_of(pair);
+    const double d = pair.now.distance_m;
+    if (d > kSettings.range_m) {
+      assert_int_equal(rows.count, 0);
+      continue;
+    }
+    const PointJacobian jacobian = point_jacobian(scene.posture, shape_of(shape).body, pair.now.on_arm);
+    if (!can_matter(jacobian.transpose() * pair.now.normal)) continue;
+    assert_int_equal(rows.count, 2);
+    check_near(rows.rows[0].bound, hard_bound(rows.rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
+    check_near(rows.rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)),
+               1e-9);
+  }
+}
+
+/// A link that runs away before an obstacle that comes at it keeps its distance; one that is left alone need not.
+void an_obstacle_that_comes_asks_for_more_than_one_that_leaves(void**) {
+  Random random(3);
+  for (int trial = 0; trial < 500; ++trial) {
+    const JointVector q_rad = random.posture(lwa3());
+    const int shape = moving_shape(random);
+    Obstacle obstacle = any_obstacle(placed(forward(lwa3(), q_rad), shape_of(shape)), random);
+    const Proximity now = measure_pair(placed(forward(lwa3(), q_rad), shape_of(shape)), obstacle.capsule);
+    if (now.distance_m > kSettings.range_m) continue;
+    double bounds[3];
+    for (int way = -1; way <= 1; ++way) {
+      Scene scene(q_rad);
+      obstacle.velocity_mps = 0.3 * way * now.normal;
+      scene.add(obstacle.capsule, obstacle.velocity_mps);
+      const ShieldRows rows = scene.rows_of(pair_of(scene.posture, shape, 0, obstacle), true);
+      bounds[way + 1] = rows.count > 0 ? rows.rows[0].bound : -std::numeric_limits<double>::infinity();  // met anyway
+    }
+    check(bounds[0] <= bounds[1] && bounds[1] <= bounds[2], "trial %d: %g, %g, %g", trial, bounds[0], bounds[1],
+          bounds[2]);
+  }
+}
+
+/// The path is that of the obstacle's point that is nearest now, which therefore stays what it is.
+void rows_of_ways_are_the_slopes_of_the_closest_approach(void**) {
+  Random random(4);
+  int seen = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    Scene scene(random.posture(lwa3()));
+    const int shape = moving_shape(random);
+    const Obstacle obstacle = any_obstacle(placed(scene.posture, shape_of(shape)), random);
+    scene.add(obstacle.capsule, obstacle.velocity_mps);
+    const NearPair pair = pair_of(scene.posture, shape, 0, obstacle);
+    if (pair.approach.head_on || pair.approach.axis_distance_m < kKink_m) continue;
+    const Vector3& point = pair.now.on_obstacle;
+    const JointVector expected = slope(scene.q_rad, [&](const Posture& posture) {
+      return predict_approach(placed(posture, shape_of(shape)), {point, point, obstacle.capsule.radius_m},
+                              obstacle.velocity_mps, kSettings.pass_horizon_s)
+          .distance_m;
+    });
+    const ShieldRows rows = scene.rows_of(pair);
+    for (int i = 0; i < rows.count; ++i) {
+      const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
+      if (row.tier != Tier::kPass) continue;
+      check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.approach.distance_m);
+      ++seen;
+    }
+  }
+  check(seen > 800, "only %d", seen);
+}
+
+void rows_of_links_against_each_other_are_their_slopes(void**) {
+  const Pairs pairs = find_self_pairs(lwa3());
+  Random random(5);
+  int seen = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.posture(lwa3()));
+    for (const auto& [a, b] : pairs) {
+      const auto distance = [a = a, b = b](const Posture& posture) {
+        return measure_pair(placed(posture, shape_of(a)), placed(posture, shape_of(b)));
+      };
+      const Proximity now = distance(scene.posture);
+      if (now.axis_distance_m < kKink_m) continue;
+      scene.self_pairs = {{a, b}};
+      const ShieldRows rows = scene.rows(range_of(1e9));
+      const JointVector expected =
+          slope(scene.q_rad, [&](const Posture& posture) { return distance(posture).distance_m; });
+      if (!can_matter(expected)) continue;
+      assert_int_equal(rows.count, 1);
+      check_near_because(rows.rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
+      check_near(rows.rows[0].bound, hard_bound(rows.rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
+      ++seen;
+    }
+  }
+  check(seen > 600, "only %d", seen);
+}
+
+double worst_shortfall(const ShieldRow& row, const VelocityRange& range) {
+  double worst = row.bound;
+  for (int i = 0; i < 7; ++i) worst -= row.row[i] * (row.row[i] > 0.0 ? range.lower_radps[i] : range.upper_radps[i]);
+  return worst;
+}
+
+bool same(const ShieldRow& a, const ShieldRow& b) {
+  return a.row == b.row && a.bound == b.bound && a.tier == b.tier && a.other_bound == b.other_bound;
+}
+
+/// All rows of all pairs that some velocity in the range does not meet, however many they are.
+std::vector<ShieldRow> all_rows(Scene& scene, const std::vector<NearPair>& near, const VelocityRange& range) {
+  std::vector<ShieldRow> all;
+  for (const NearPair& pair : near) {
+    const ShieldRows rows = scene.rows_of(pair);
+    for (int i = 0; i < rows.count; ++i)
+      if (worst_shortfall(rows.rows[static_cast<size_t>(i)], range) > 0.0)
+        all.push_back(rows.rows[static_cast<size_t>(i)]);
+  }
+  return all;
+}
+
+void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(void**) {
+  Random random(6);
+  int crowded = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Scene scene(random.posture(lwa3()));
+    scene.last_radps = random.joints(7, -2, 2);
+    std::vector<NearPair> near;
+    for (int i = random.index(kMaxNear + 1); i > 0; --i) {
+      const int shape = moving_shape(random);
+      const Obstacle obstacle = any_obstacle(placed(scene.posture, shape_of(shape)), random);
+      scene.add(obstacle.capsule, obstacle.velocity_mps);
+      near.push_back(pair_of(scene.posture, shape, scene.set->count - 1, obstacle));
+    }
+    const JointVector middle = random.joints(7, -2, 2);
+    const VelocityRange range{middle - random.joints(7, 0, 0.5), middle + random.joints(7, 0, 0.5)};
+    const std::vector<ShieldRow> all = all_rows(scene, near, range);
+    scene.clearance.near_count = static_cast<int>(near.size());
+    std::copy(near.begin(), near.end(), scene.clearance.near.begin());
+    const ShieldRows kept = scene.rows(range);
+    assert_int_equal(kept.count, std::min(kMaxRows, static_cast<int>(all.size())));
+    double least_kept = 1e9, most_left_out = 0.0;
+    for (const ShieldRow& row : all) {
+      const auto end = kept.rows.begin() + kept.count;
+      const bool is_kept = std::any_of(kept.rows.begin(), end, [&](const ShieldRow& one) { return same(one, row); });
+      if (is_kept)
+        least_kept = std::min(least_kept, worst_shortfall(row, range));
+      else
+        most_left_out = std::max(most_left_out, worst_shortfall(row, range));
+    }
+    check(most_left_out <= least_kept + 1e-12, "trial %d: left out %g, kept %g", trial, most_left_out, least_kept);
+    if (all.size() > kMaxRows) ++crowded;
+  }
+  check(crowded > 20, "only %d", crowded);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(rows_of_distances_are_their_slopes),
+      cmocka_unit_test(the_bounds_of_distances_are_barriers),
+      cmocka_unit_test(an_obstacle_that_comes_asks_for_more_than_one_that_leaves),
+      cmocka_unit_test(rows_of_ways_are_the_slopes_of_the_closest_approach),
+      cmocka_unit_test(rows_of_links_against_each_other_are_their_slopes),
+      cmocka_unit_test(only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
