@@ -45,17 +45,16 @@ double barrier(double gain_per_s, double distance_m, double clearance_m) {
   return -gain_per_s * (distance_m - clearance_m);
 }
 
-/// The hard barrier, which has to be kept with the accelerations that the joints have: never nearer at a speed that
-/// could not be braked within the room left, one period of travel included. Along a row the joints brake with
-/// sum |row_i| a_i together; other rows need their share of it.
-double hard_barrier(const ShieldSettings& settings, const Surroundings& now, const JointVector& row, double distance_m,
-                    double clearance_m) {
+/// The hard barrier, which has to be kept with the accelerations that the joints have: the arm itself never goes nearer
+/// at a speed that it could not brake within the room left, one period of travel included. Along a row the joints brake
+/// with sum |row_i| a_i together; other rows need their share of it. closing_mps is the obstacle's part.
+double hard_barrier(const ShieldSettings& settings, const Surroundings& now, const JointVector& row, double room_m,
+                    double closing_mps) {
   const double share = 0.5;
   const double braking_mps2 = share * row.cwiseAbs().dot(now.arm.limits.acceleration_radps2);
-  const double room_m = distance_m - clearance_m;
-  const double approach_mps = settings.hard_gain_per_s * room_m;
-  if (room_m <= 0.0) return -approach_mps;
-  return -std::min(approach_mps, stopping_velocity(room_m, braking_mps2, now.period_s));
+  const double by_gain_mps = closing_mps - settings.hard_gain_per_s * room_m;
+  if (room_m <= 0.0) return by_gain_mps;
+  return std::max(by_gain_mps, std::min(closing_mps, 0.0) - stopping_velocity(room_m, braking_mps2, now.period_s));
 }
 
 void add_pass(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range, const NearPair& pair,
@@ -91,8 +90,8 @@ void add_distance(const ShieldSettings& settings, const Surroundings& now, const
       (pair.approach.distance_m - settings.hard_clearance_m) / (settings.pass_clearance_m - settings.hard_clearance_m),
       0.0, 1.0);
   const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-  add(range, {row, threat_mps + hard_barrier(settings, now, row, distance_m, settings.hard_clearance_m), Tier::kHard},
-      rows);
+  const double room_m = distance_m - settings.hard_clearance_m;
+  add(range, {row, hard_barrier(settings, now, row, room_m, threat_mps), Tier::kHard}, rows);
   if (hard_only) return;
   add(range,
       {row, approaching_mps + barrier(settings.comfort_gain_per_s, distance_m, settings.comfort_clearance_m),
@@ -107,7 +106,8 @@ void add_self(const ShieldSettings& settings, const Surroundings& now, const Vel
   const PointJacobian relative =
       point_jacobian(now.posture, first.body, pair.on_arm) - point_jacobian(now.posture, second.body, pair.on_obstacle);
   const JointVector row = relative.transpose() * pair.normal;
-  add(range, {row, hard_barrier(settings, now, row, pair.distance_m, settings.self_clearance_m), Tier::kHard}, rows);
+  add(range, {row, hard_barrier(settings, now, row, pair.distance_m - settings.self_clearance_m, 0.0), Tier::kHard},
+      rows);
 }
 
 }  // namespace
