@@ -99,24 +99,22 @@ double comfort_weight(const ShieldSettings& shield, const Situation& situation, 
 
 /// The wish made safe: by the shield where it is on, else left to the limits alone.
 JointVector keep_clear(const Model& model, const Situation& situation, const ArmState& arm, const VelocityRange& range,
-                       const State& state, const Wish& wish) {
+                       const Wish& wish, State& state) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
   if (mode != Mode::kTrack && mode != Mode::kHold) return wish.velocity_radps;
-  const Surroundings around{model.arm,
-                            situation.posture,
-                            arm.position_rad,
-                            state.velocity_radps,
-                            situation.clearance,
-                            situation.obstacles,
-                            model.self_pairs,
-                            settings.period_s(),
-                            comfort_weight(settings.shield, situation, mode)};
+  const Surroundings around{model.arm,           situation.posture,
+                            arm.position_rad,    state.velocity_radps,
+                            situation.clearance, situation.obstacles,
+                            model.self_pairs,    state.evasion_radps,
+                            settings.period_s(), comfort_weight(settings.shield, situation, mode)};
   const VelocityRange lasting =
       lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
   const TaskJacobian jacobian = tool_jacobian(situation.posture, situation.target.tracks_orientation ? 6 : 3);
-  return shield(settings.shield, around, lasting, range, jacobian, wish.velocity_radps).velocity_radps;
+  const Shielded safe = shield(settings.shield, around, lasting, range, jacobian, wish.velocity_radps);
+  state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
+  return safe.velocity_radps;
 }
 
 /// The last word before a command leaves: within all limits, or braking.
@@ -188,7 +186,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     const Situation situation{model.arm, posture, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
     const Wish wish = ask_law(model, situation, next);
     const VelocityRange range = next_range(model, next, arm);
-    const JointVector safe = keep_clear(model, situation, arm, range, next, wish);
+    const JointVector safe = keep_clear(model, situation, arm, range, wish, next);
     if (!safe.allFinite()) distrust(now_s, next);
     result.command = gate(model, next, arm, range, safe, report.limiting);
     remember(result.command, wish, next);

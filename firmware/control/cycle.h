@@ -34,6 +34,8 @@ struct State {
   JointVector position_rad;    ///< last commanded
   JointVector velocity_radps;  ///< last commanded
 
+  JointVector evasion_radps;  ///< by which the shield gets out of a way; size 0: nothing is in the way
+
   bool planning = false;  ///< was tracking, so that planned_mps is valid
   Vector3 planned_mps = Vector3::Zero();
 

@@ -63,38 +63,87 @@ double least_clearance(const Surroundings& now, const Threats& threats, const Jo
   return least_m;
 }
 
+/// What a way out costs: how far it is from the wish, and what it will miss of the hard clearance.
+class Judge {
+ public:
+  Judge(const ShieldSettings& settings, const Surroundings& now, const Nearness& nearness)
+      : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance)) {}
+
+  double missing_m(const JointVector& velocity_radps) const {
+    return std::max(0.0, settings_.hard_clearance_m - least_clearance(now_, threats_, velocity_radps));
+  }
+
+  double cost(const JointVector& velocity_radps) const {
+    const JointVector off = velocity_radps - nearness_.wish_radps;
+    const double tool = (nearness_.tool_jacobian * off).squaredNorm();
+    return 0.5 * (off.squaredNorm() + nearness_.tool_weight * tool) + kMissWeight * missing_m(velocity_radps);
+  }
+
+ private:
+  const ShieldSettings& settings_;
+  const Surroundings& now_;
+  const Nearness& nearness_;
+  const Threats threats_;
+};
+
+/// The ways that links may leave on either side: indices of rows, the first kMostWays.
+struct Ways {
+  int count = 0;
+  std::array<int, kMostWays> rows;
+};
+
+Ways find_ways(const ShieldRows& rows) {
+  Ways ways;
+  for (int i = 0; i < rows.count && ways.count < kMostWays; ++i)
+    if (rows.rows[i].other_bound > 0.0) ways.rows[ways.count++] = i;
+  return ways;
+}
+
+/// The rows with the ways of a set left on their other side.
+ShieldRows turn(const ShieldRows& rows, const Ways& ways, int sides) {
+  ShieldRows turned = rows;
+  for (int way = 0; way < ways.count; ++way) {
+    if (!(sides >> way & 1)) continue;
+    ShieldRow& row = turned.rows[ways.rows[way]];
+    row.row = -row.row;
+    std::swap(row.bound, row.other_bound);
+  }
+  return turned;
+}
+
+bool is_threatened(const ShieldRows& rows) {
+  return std::any_of(rows.rows.begin(), rows.rows.begin() + rows.count,
+                     [](const ShieldRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
+}
+
 }  // namespace
 
-QpSolution choose_sides(const ShieldSettings& settings, const Surroundings& now, const ShieldRows& rows,
-                        const VelocityRange& range, const Nearness& nearness, const QpSolution& plan) {
-  std::array<int, kMostWays> ways;
-  int count = 0;
-  for (int i = 0; i < rows.count && count < kMostWays; ++i)
-    if (rows.rows[i].other_bound > 0.0) ways[count++] = i;
-  if (count == 0) return plan;
-
-  const Threats threats = find_threats(now.clearance);
-  const auto judge = [&](const QpSolution& candidate) {
-    const double missing_m = settings.pass_clearance_m - least_clearance(now, threats, candidate.velocity_radps);
-    return candidate.cost + kMissWeight * std::max(0.0, missing_m);
-  };
-  QpSolution best = plan;
-  double best_cost = judge(plan);
-  for (int sides = 1; sides < 1 << count; ++sides) {
-    ShieldRows turned = rows;
-    for (int way = 0; way < count; ++way) {
-      if (!(sides >> way & 1)) continue;
-      ShieldRow& row = turned.rows[ways[way]];
-      row.row = -row.row;
-      std::swap(row.bound, row.other_bound);
-    }
-    const QpSolution candidate = solve(turned, range, nearness);
-    const double cost = judge(candidate);
-    if (cost >= kClearlyBetter * best_cost) continue;
+Evasion evade(const ShieldSettings& settings, const Surroundings& now, const ShieldRows& rows,
+              const VelocityRange& range, const Nearness& nearness, const JointVector& plan_radps) {
+  if (!is_threatened(rows)) return {plan_radps, false};
+  const Judge judge(settings, now, nearness);
+  if (judge.missing_m(plan_radps) <= 0.0) return {plan_radps, false};
+  JointVector best = plan_radps;
+  double best_cost = judge.cost(plan_radps);
+  const auto consider = [&](const JointVector& candidate, double advantage) {
+    const double cost = advantage * judge.cost(candidate);
+    if (cost >= best_cost) return;
     best = candidate;
     best_cost = cost;
+  };
+  const Ways ways = find_ways(rows);
+  for (int sides = 1; sides < 1 << ways.count; ++sides)
+    consider(solve(turn(rows, ways, sides), range, nearness).velocity_radps, 1.0);
+  for (int joint = 0; joint < now.arm.joints; ++joint) {
+    for (const double speed : {range.lower_radps[joint], range.upper_radps[joint]}) {
+      JointVector single = JointVector::Zero(now.arm.joints);
+      single[joint] = speed;
+      consider(single, 1.0);
+    }
   }
-  return best;
+  if (now.evasion_radps.size() > 0)
+    consider(now.evasion_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps), kClearlyBetter);
+  return {best, true};
 }
 
 }  // namespace sidestep

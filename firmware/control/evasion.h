@@ -4,10 +4,12 @@
 
 namespace sidestep {
 
-/// On which side each link leaves the way of an obstacle. `plan` is the velocity for the sides that the rows name.
-/// Where that leads into an obstacle, tries the other sides of the most urgent ways, looks with each at where the arm
-/// would really be, and returns the best. Bounded: at most 2^4 QPs and short rollouts, none where the plan is fine.
-QpSolution choose_sides(const ShieldSettings& settings, const Surroundings& now, const ShieldRows& rows,
-                        const VelocityRange& range, const Nearness& nearness, const QpSolution& plan);
+/// The way out of the obstacles' ways. `plan_radps` meets the rows, which know one side of every way and what is
+/// linear. Looks with it and with other velocities at where the arm would really be: every side of the most urgent
+/// ways, each joint alone as fast as it can, and what was chosen the cycle before, which the others have to be clearly
+/// better than, or the arm would dither between two. Bounded: at most 2^4 QPs and 31 short rollouts; none where the
+/// plan will do.
+Evasion evade(const ShieldSettings& settings, const Surroundings& now, const ShieldRows& rows,
+              const VelocityRange& range, const Nearness& nearness, const JointVector& plan_radps);
 
 }  // namespace sidestep

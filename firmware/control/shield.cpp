@@ -8,12 +8,12 @@ Shielded shield(const ShieldSettings& settings, const Surroundings& now, const V
                 const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& wish_radps) {
   const ShieldRows rows = make_rows(settings, now, lasting, false);
   const Nearness to_wish{wish_radps, tool_jacobian, settings.tool_weight, now.comfort_weight};
-  QpSolution plan = solve(rows, lasting, to_wish);
-  plan = choose_sides(settings, now, rows, lasting, to_wish, plan);
+  const QpSolution first = solve(rows, lasting, to_wish);
+  const Evasion plan = evade(settings, now, rows, lasting, to_wish, first.velocity_radps);
 
   const Nearness to_plan{plan.velocity_radps, tool_jacobian, 0.0, now.comfort_weight};
   const QpSolution safe = solve(make_rows(settings, now, range, true), range, to_plan);
-  return {safe.velocity_radps, safe.loss_mps};
+  return {safe.velocity_radps, safe.loss_mps, plan};
 }
 
 }  // namespace sidestep

@@ -17,14 +17,22 @@ struct Surroundings {
   const Clearance& clearance;
   const ObstacleView& obstacles;
   const std::vector<std::pair<int, int>>& self_pairs;
+  const JointVector& evasion_radps;  ///< chosen the cycle before to get out of a way; size 0: none
   double period_s;
   double comfort_weight;  ///< at present, s2/m2
+};
+
+/// A joint velocity to come to, and whether it is chosen to get out of an obstacle's way.
+struct Evasion {
+  JointVector velocity_radps;
+  bool evading = false;
 };
 
 /// What the shield made of a wish.
 struct Shielded {
   JointVector velocity_radps;
   double loss_mps = 0.0;  ///< by how much the worst hard clearance had to be given up, 0 if none
+  Evasion plan;
 };
 
 /// The joint velocity within `range` that keeps clear and is nearest to the wish. Nearest counts the tool's velocity

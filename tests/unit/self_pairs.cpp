@@ -90,7 +90,8 @@ void an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself(void**) {
       const JointVector wish_radps = folding_wish(model.arm, posture, model.self_pairs, least_m);
       check(least_m >= 0.0, "trial %d, cycle %d: %g m", trial, cycle, least_m);
       nearest_m = std::min(nearest_m, least_m);
-      const Surroundings around{model.arm, posture, q_rad, last_radps, clearance, view, model.self_pairs, 0.01, 1.0};
+      const Surroundings around{model.arm, posture,          q_rad,      last_radps, clearance,
+                                view,      model.self_pairs, last_radps, 0.01,       1.0};
       last_radps = shield(model.settings.shield, around, lasting_range(model.arm.limits, q_rad, q_rad, kPeriod_s),
                           velocity_range(model.arm.limits, q_rad, q_rad, last_radps, kPeriod_s),
                           tool_jacobian(posture, 3), wish_radps)

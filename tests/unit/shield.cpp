@@ -38,6 +38,7 @@ struct Scene {
   ObstacleView view{};
   Clearance clearance{};
   VelocityRange lasting{}, range{};
+  JointVector evasion_radps{};
 
   void measure() {
     const ShieldSettings& settings = model().settings.shield;
@@ -48,7 +49,8 @@ struct Scene {
     range = velocity_range(model().arm.limits, q_rad, q_rad, last_radps, kPeriod_s);
   }
   Surroundings around() const {
-    return {model().arm, posture, q_rad, last_radps, clearance, view, model().self_pairs, kPeriod_s, comfort_weight};
+    return {model().arm,        posture,       q_rad,     last_radps,    clearance, view,
+            model().self_pairs, evasion_radps, kPeriod_s, comfort_weight};
   }
   Shielded ask() const {
     return shield(model().settings.shield, around(), lasting, range, tool_jacobian(posture, task_rows), wish_radps);
@@ -65,6 +67,7 @@ struct Scene {
     const Shielded given = ask();
     q_rad += kPeriod_s * given.velocity_radps;
     last_radps = given.velocity_radps;
+    evasion_radps = given.plan.evading ? given.plan.velocity_radps : JointVector();
     for (int i = 0; i < set.count; ++i) {
       Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)];
       obstacle.capsule = moved(obstacle, kPeriod_s);
@@ -129,6 +132,7 @@ void randomise(Scene& scene, Random& random) {
   scene.last_radps = random.joints(7, -2, 2) * (random.chance(0.3) ? 0.0 : 1.0);
   scene.wish_radps = random.joints(7, -1, 1) * std::pow(10.0, random.uniform(-2, 3));
   if (random.chance(0.1)) scene.wish_radps.setZero();
+  scene.evasion_radps = random.chance(0.5) ? random.joints(7, -2, 2) : JointVector();
   scene.comfort_weight = random.chance(0.5) ? 300.0 : 1.0;
   scene.task_rows = random.chance(0.5) ? 3 : 6;
   scene.view = {&scene.set, random.uniform(0, 0.1), random.chance(0.1) ? random.uniform(0, 0.5) : 0.0};

@@ -45,8 +45,8 @@ struct Scene {
   }
   ShieldRows rows(const VelocityRange& range, bool hard_only = false) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
-    return make_rows(kSettings, {lwa3(), posture, q_rad, last_radps, clearance, view, self_pairs, 0.01, 1.0}, range,
-                     hard_only);
+    const Surroundings now{lwa3(), posture, q_rad, last_radps, clearance, view, self_pairs, last_radps, 0.01, 1.0};
+    return make_rows(kSettings, now, range, hard_only);
   }
   /// The rows of one pair, none of them dropped.
   ShieldRows rows_of(const NearPair& pair, bool hard_only = false) {
