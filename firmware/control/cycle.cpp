@@ -4,33 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/control/guided_law.h"
 #include "firmware/control/limits.h"
 #include "firmware/control/observe.h"
 #include "firmware/control/paper_law.h"
+#include "firmware/control/present.h"
 #include "firmware/control/shield.h"
 #include "firmware/control/sidestep_law.h"
 
 namespace sidestep {
 namespace {
-
-/// The obstacles as they are now: the last set and its age; past its time it grows by what may have happened since.
-ObstacleView view_obstacles(const Settings& settings, const Latest<ObstacleSet>& obstacles, double now_s) {
-  if (!obstacles.message) return {};
-  const double age_s = obstacles.age_s(now_s);
-  const bool fresh = obstacles.fresh(now_s, settings.ages.obstacles_s);
-  return {obstacles.message, age_s, fresh ? 0.0 : age_s * settings.obstacle_speed_bound_mps};
-}
-
-/// The target moved forward to the present by its own velocities.
-Target present(const Latest<Target>& latest, double now_s) {
-  Target target = *latest.message;
-  const double age_s = latest.age_s(now_s);
-  target.position_m += target.velocity_mps * age_s;
-  const Vector3 turn = target.angular_velocity_radps * age_s;
-  if (target.tracks_orientation && turn.squaredNorm() > 0.0)
-    target.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
-  return target;
-}
 
 /// A new stream of commands starts from the measured arm, so that nothing jumps; a running one goes on from its last.
 void start_from(const Model& model, const ArmState& arm, State& next) {
@@ -40,10 +23,19 @@ void start_from(const Model& model, const ArmState& arm, State& next) {
   next.planning = false;
 }
 
+/// The paper's law knows no guide.
+const Guide* guide_to_follow(const Model& model, const Inputs& inputs) {
+  const bool has_way = inputs.guide && inputs.guide->knots > 0;
+  return has_way && model.settings.law == Law::kSidestep ? inputs.guide : nullptr;
+}
+
 /// The joint velocity that the law wishes for; at rest unless tracking.
-Wish ask_law(const Model& model, const Situation& situation, const State& state) {
+Wish ask_law(const Model& model, const Situation& situation, const State& state, const Guide* guide, double now_s) {
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
-  if (model.settings.law == Law::kSidestep) return sidestep_law(model.settings.sidestep, situation);
+  const SidestepGains& gains = model.settings.sidestep;
+  if (guide) return guided_law(gains, situation, *guide, now_s);
+  if (model.settings.law == Law::kSidestep)
+    return sidestep_law(gains, situation, away_from_limits(gains, model.arm.limits, situation.position_rad));
   const Vector3* planned = state.planning ? &state.planned_mps : nullptr;
   return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
 }
@@ -89,8 +81,9 @@ VelocityRange next_range(const Model& model, const State& state, const ArmState&
 }
 
 /// Far from the target there are many ways, so a comfortable one is worth a detour; at the target the tool comes first.
-double comfort_weight(const ShieldSettings& shield, const Situation& situation, Mode mode) {
-  if (mode != Mode::kTrack) return shield.comfort_least_weight;
+/// A guide is a detour already.
+double comfort_weight(const ShieldSettings& shield, const Situation& situation, Mode mode, bool guided) {
+  if (mode != Mode::kTrack || guided) return shield.comfort_least_weight;
   const double distance_m = (situation.target.position_m - situation.posture.tool_position).norm();
   const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
   return shield.comfort_least_weight +
@@ -99,7 +92,7 @@ double comfort_weight(const ShieldSettings& shield, const Situation& situation, 
 
 /// The wish made safe: by the shield where it is on, else left to the limits alone.
 JointVector keep_clear(const Model& model, const Situation& situation, const ArmState& arm, const VelocityRange& range,
-                       const Wish& wish, State& state) {
+                       const Wish& wish, bool guided, State& state) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
@@ -108,7 +101,7 @@ JointVector keep_clear(const Model& model, const Situation& situation, const Arm
                             arm.position_rad,    state.velocity_radps,
                             situation.clearance, situation.obstacles,
                             model.self_pairs,    state.evasion_radps,
-                            settings.period_s(), comfort_weight(settings.shield, situation, mode)};
+                            settings.period_s(), comfort_weight(settings.shield, situation, mode, guided)};
   const VelocityRange lasting =
       lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
   const TaskJacobian jacobian = tool_jacobian(situation.posture, situation.target.tracks_orientation ? 6 : 3);
@@ -156,6 +149,12 @@ void report_tool(const Posture& posture, const ArmState& arm, Report& report) {
   report.tool_velocity_mps = tool_jacobian(posture, 3) * arm.velocity_radps;
 }
 
+void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
+  if (!guide || mode != Mode::kTrack) return;
+  report.outlook = guide->outlook;
+  report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
+}
+
 void report_clearance(const Clearance& clearance, const Latest<ObstacleSet>& obstacles, Report& report) {
   if (!obstacles.message) return;
   report.clearance_m = clearance.nearest.distance_m;
@@ -184,13 +183,15 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
 
     const Situation situation{model.arm, posture, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
-    const Wish wish = ask_law(model, situation, next);
+    const Guide* guide = guide_to_follow(model, inputs);
+    const Wish wish = ask_law(model, situation, next, guide, now_s);
     const VelocityRange range = next_range(model, next, arm);
-    const JointVector safe = keep_clear(model, situation, arm, range, wish, next);
+    const JointVector safe = keep_clear(model, situation, arm, range, wish, guide != nullptr, next);
     if (!safe.allFinite()) distrust(now_s, next);
     result.command = gate(model, next, arm, range, safe, report.limiting);
     remember(result.command, wish, next);
 
+    report_guide(next.supervision.mode, inputs.guide, now_s, report);
     report_tool(posture, arm, report);
     report_clearance(clearance, inputs.obstacles, report);
     if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/control/guide.h"
 #include "firmware/control/inputs.h"
 #include "firmware/control/supervisor.h"
 #include "firmware/model/clearance.h"
@@ -24,6 +25,7 @@ struct Inputs {
   Latest<ObstacleSet> obstacles;
   int skipped_cycles = 0;  ///< since the cycle before
   bool stop = false;
+  const Guide* guide = nullptr;  ///< from foresight; null: none
 };
 
 /// What one cycle hands to the next.
@@ -61,6 +63,8 @@ struct Report {
   double beta = 0.0;
   double damping = 0.0;
   double shield_correction_radps = 0.0;
+  Outlook outlook = Outlook::kDirect;
+  double guide_horizon_s = 0.0;  ///< until the guide's end; 0 without one
   const char* message = "";
 };
 

@@ -32,12 +32,14 @@ struct PaperGains {
 
 /// The law of our own: where the tool shall go, before the shield.
 struct SidestepGains {
-  double k_pos_per_s = 8.0;      ///< tool speed over distance to the target
-  double k_ori_per_s = 4.0;      ///< likewise for the angle, when the target asks for an orientation
-  double k_posture_per_s = 0.5;  ///< return of the joints from their limits, as far as the tool does not notice
-  double v_max_mps = 1.0;        ///< largest tool speed toward the target, beside the target's own
-  double lambda_0 = 0.05;        ///< largest damping near singular postures, paper eq (6)
-  double sigma_0 = 0.05;         ///< damping begins below this singular value
+  double k_pos_per_s = 8.0;          ///< tool speed over distance to the target
+  double k_ori_per_s = 4.0;          ///< likewise for the angle, when the target asks for an orientation
+  double k_posture_per_s = 0.5;      ///< return of the joints from their limits, as far as the tool does not notice
+  double k_guide_per_s = 4.0;        ///< return of the joints to the way of a guide
+  double guide_posture_share = 0.5;  ///< of the joints' speed, at most, to the posture of a guide while at the target
+  double v_max_mps = 1.0;            ///< largest tool speed toward the target, beside the target's own
+  double lambda_0 = 0.05;            ///< largest damping near singular postures, paper eq (6)
+  double sigma_0 = 0.05;             ///< damping begins below this singular value
 };
 
 /// The shield: the joint velocity nearest to the wish that keeps clear.
@@ -48,16 +50,24 @@ struct ShieldSettings {
   double pass_clearance_m = 0.04;  ///< at the closest approach of a moving obstacle
   double pass_gain_per_s = 6.0;
   double pass_reaction_s = 0.12;      ///< the arm's own time to get moving
-  double pass_horizon_s = 1.2;        ///< how far ahead an obstacle's way is looked at
+  double pass_horizon_s = 0.6;        ///< how far ahead an obstacle's way is looked at
   double comfort_clearance_m = 0.16;  ///< kept where the task leaves room
   double comfort_gain_per_s = 4.0;
   double comfort_far_m = 0.4;         ///< with the tool farther than this from the target comfort has its full weight,
   double comfort_near_m = 0.15;       ///< nearer than this the least: then it may move the arm but hardly the tool
-  double comfort_least_weight = 1.0;  ///< s2/m2
+  double comfort_least_weight = 0.2;  ///< s2/m2
   double comfort_weight = 300.0;      ///< of the comfort against the wish, s2/m2
   double tool_weight = 10.0;          ///< of the tool's velocity against the joints', 1/m2
   double self_clearance_m = 0.02;     ///< between links that are no neighbours
   double range_m = 0.4;               ///< pairs farther apart do not matter yet
+};
+
+/// Looking ahead for ways out of dead ends.
+struct ForesightSettings {
+  bool enabled = true;        ///< off for experiments only
+  double horizon_s = 6.0;     ///< how far ahead
+  double clearance_m = 0.04;  ///< of a guide
+  int64_t seed = 1;           ///< of its random choices
 };
 
 /// Ages by local receipt time after which an input no longer counts, s, and what happens then.
@@ -77,7 +87,7 @@ struct Settings {
   Ages ages;
   SidestepGains sidestep;
   ShieldSettings shield;
-  bool foresight_enabled = true;          ///< off for experiments only
+  ForesightSettings foresight;
   bool wait_for_obstacles = true;         ///< false: no obstacle set ever received counts as no obstacles
   double obstacle_speed_bound_mps = 2.0;  ///< how fast an obstacle that is no longer reported may move
   double following_error_rad = 0.5;       ///< how far the command may lead the measured arm, per joint

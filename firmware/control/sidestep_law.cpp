@@ -13,18 +13,6 @@ Vector3 clipped(const Vector3& v, double largest) {
   return norm > largest ? Vector3(v * (largest / norm)) : v;
 }
 
-/// Direction toward the middle of the joints' ranges, rad: hardly anything within, one radian at a limit.
-JointVector away_from_limits(const JointLimits& limits, const JointVector& q_rad) {
-  JointVector p(q_rad.size());
-  for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
-    const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
-    const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
-    const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
-    p[i] = -share * share * share;
-  }
-  return p;
-}
-
 /// J* of paper eqs (5) and (6), by the eigenvalues of J J^T.
 struct DampedInverse {
   using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
@@ -49,7 +37,18 @@ struct DampedInverse {
 
 }  // namespace
 
-Wish sidestep_law(const SidestepGains& gains, const Situation& now) {
+JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limits, const JointVector& q_rad) {
+  JointVector away_radps(q_rad.size());
+  for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
+    const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
+    const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
+    const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
+    away_radps[i] = -gains.k_posture_per_s * share * share * share;
+  }
+  return away_radps;
+}
+
+Wish sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps) {
   const Target& target = now.target;
   const int rows = target.tracks_orientation ? 6 : 3;
   const TaskJacobian jacobian = tool_jacobian(now.posture, rows);
@@ -65,11 +64,10 @@ Wish sidestep_law(const SidestepGains& gains, const Situation& now) {
     x.tail<3>() = target.angular_velocity_radps + gains.k_ori_per_s * to_goal.angle() * to_goal.axis();
   }
 
-  // The posture's share goes in as a preference: J* (x - J p) + p is p in the null space and x in the task.
-  const JointVector p_radps = gains.k_posture_per_s * away_from_limits(now.arm.limits, now.position_rad);
+  // The preference: J* (x - J p) + p is p in the null space and x in the task.
   const DampedInverse inverse(gains, jacobian);
   wish.damping = inverse.lambda;
-  wish.velocity_radps = p_radps + inverse.solve(x - jacobian * p_radps);
+  wish.velocity_radps = preferred_radps + inverse.solve(x - jacobian * preferred_radps);
   return wish;
 }
 

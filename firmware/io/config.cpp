@@ -68,6 +68,8 @@ void read_sidestep(Section sidestep, SidestepGains& gains) {
   sidestep.positive("k_pos_per_s", gains.k_pos_per_s);
   sidestep.positive("k_ori_per_s", gains.k_ori_per_s);
   sidestep.not_negative("k_posture_per_s", gains.k_posture_per_s);
+  sidestep.positive("k_guide_per_s", gains.k_guide_per_s);
+  sidestep.not_negative("guide_posture_share", gains.guide_posture_share);
   sidestep.positive("v_max_mps", gains.v_max_mps);
   sidestep.not_negative("lambda_0", gains.lambda_0);
   sidestep.positive("sigma_0", gains.sigma_0);
@@ -134,8 +136,10 @@ void read_channels(Section section, Channels& channels) {
   section.finish();
 }
 
-void read_switch(Section section, bool& enabled) {
-  section.flag("enabled", enabled);
+void read_foresight(Section section, ForesightSettings& foresight) {
+  section.flag("enabled", foresight.enabled);
+  section.positive("horizon_s", foresight.horizon_s);
+  section.not_negative("clearance_m", foresight.clearance_m);
   section.finish();
 }
 
@@ -176,7 +180,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_channels(root.section("channels"), config.channels);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);
-  read_switch(root.section("foresight"), settings.foresight_enabled);
+  read_foresight(root.section("foresight"), settings.foresight);
   root.finish();
   return config;
 }

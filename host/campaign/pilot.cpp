@@ -6,6 +6,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "firmware/foresight/foresight.h"
 #include "firmware/model/kinematics.h"
 #include "host/campaign/plain_tracking.h"
 
@@ -22,7 +23,8 @@ double thread_cpu_s() {
 
 class Controller : public Pilot {
  public:
-  explicit Controller(const Model& model) : model_(model), obstacles_(std::make_unique<ObstacleSet>()) {}
+  explicit Controller(const Model& model)
+      : model_(model), obstacles_(std::make_unique<ObstacleSet>()), foresight_(model) {}
 
   Steering cycle(const Seen& seen) override {
     const double now_s = static_cast<double>(seen.now_us) * 1e-6;
@@ -39,10 +41,15 @@ class Controller : public Pilot {
     inputs.target = {&target_, now_s, cycles_};
     if (obstacles_count_ > 0)
       inputs.obstacles = {obstacles_.get(), static_cast<double>(seen.obstacles.received_us) * 1e-6, obstacles_count_};
+    inputs.guide = guide_;
 
     Steering steering;
     const Result result = timed_step(inputs, now_s, steering.cpu_s);
     state_ = result.next;
+    if (foresees(model_.settings)) {
+      look(model_, inputs, state_, now_s, snapshot_);
+      guide_ = &foresight_.think(snapshot_);
+    }
     steering.tracking = result.report.mode == Mode::kTrack;
     steering.velocity_radps = result.command.velocity_radps;
     steering.message = result.report.message;
@@ -82,6 +89,9 @@ class Controller : public Pilot {
   ArmState arm_;
   Target target_;
   std::unique_ptr<ObstacleSet> obstacles_;
+  Foresight foresight_;
+  Snapshot snapshot_;
+  const Guide* guide_ = nullptr;
   int64_t cycles_ = 0;
   int64_t obstacles_count_ = 0;
   double worst_s_ = 0.0;

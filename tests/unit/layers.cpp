@@ -52,7 +52,10 @@ const Rule kRules[] = {
     {"the cycle knows no shell", R"(#\s*include\s*"firmware/io/)", {"firmware/io", "firmware/main.cpp"}},
     {"the model knows no control",
      R"(#\s*include\s*"firmware/(control|io)/)",
-     {"firmware/io", "firmware/control", "firmware/main.cpp"}},
+     {"firmware/io", "firmware/control", "firmware/foresight", "firmware/main.cpp"}},
+    {"the cycle takes guides, it does not look ahead",
+     R"(#\s*include\s*"firmware/foresight/)",
+     {"firmware/io", "firmware/foresight", "firmware/main.cpp"}},
 };
 
 bool allows(const Rule& rule, const std::string& file) {

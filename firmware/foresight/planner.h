@@ -1,0 +1,38 @@
+#pragma once
+
+#include "firmware/foresight/snapshot.h"
+
+namespace sidestep {
+
+/// Random numbers that are the same everywhere (SplitMix64).
+class Dice {
+ public:
+  explicit Dice(int64_t seed) : state_(static_cast<uint64_t>(seed)) {}
+  double uniform(double lower, double upper);
+
+ private:
+  uint64_t state_;
+};
+
+/// Finds ways in joint space and time that keep clear of the obstacles as they move now: straight to a posture that has
+/// the target and can stay there, or by way of another one.
+class Planner {
+ public:
+  explicit Planner(const Model& model) : model_(model), dice_(model.settings.foresight.seed) {}
+
+  /// Tries a few random ways and returns the one that arrives soonest; without knots when all fail. Bounded.
+  Guide to_target(const Snapshot& from);
+
+  /// Likewise to a place nearby where nothing will come, outlook kWaiting.
+  Guide to_safety(const Snapshot& from);
+
+ private:
+  JointVector random_posture(const JointVector& around_rad, double reach_rad);
+  bool is_clear(const Snapshot& from, const Guide& guide) const;
+  void append(Guide& guide, const JointVector& q_rad) const;
+
+  const Model& model_;
+  Dice dice_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,61 @@
+#include "firmware/foresight/snapshot.h"
+
+#include <algorithm>
+
+#include "firmware/control/present.h"
+
+namespace sidestep {
+namespace {
+
+/// How near an obstacle comes to the base on its way, m.
+double nearest_to_base(const Obstacle& obstacle, double horizon_s) {
+  const Vector3 centre = 0.5 * (obstacle.capsule.start + obstacle.capsule.end);
+  const Vector3 on_way = nearest_on_segment(centre, centre + obstacle.velocity_mps * horizon_s, Vector3::Zero().eval());
+  return on_way.norm() - 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm() - obstacle.capsule.radius_m;
+}
+
+/// Keeps the obstacles that come nearest.
+class Nearest {
+ public:
+  Nearest(Movers& movers, double horizon_s) : movers_(movers), horizon_s_(horizon_s) { movers_.count = 0; }
+
+  void consider(const Obstacle& obstacle) {
+    const double distance_m = nearest_to_base(obstacle, horizon_s_);
+    if (movers_.count < kMaxMovers) {
+      distance_m_[movers_.count] = distance_m;
+      movers_.obstacles[movers_.count++] = obstacle;
+      return;
+    }
+    const auto farthest = std::max_element(distance_m_.begin(), distance_m_.end());
+    if (distance_m >= *farthest) return;
+    *farthest = distance_m;
+    movers_.obstacles[farthest - distance_m_.begin()] = obstacle;
+  }
+
+ private:
+  Movers& movers_;
+  double horizon_s_;
+  std::array<double, kMaxMovers> distance_m_{};
+};
+
+}  // namespace
+
+void look(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot) {
+  snapshot.tracking = state.supervision.mode == Mode::kTrack;
+  if (!snapshot.tracking) return;
+  snapshot.now_s = now_s;
+  snapshot.state = state;
+  snapshot.arm = *inputs.arm.message;
+  snapshot.target = present(inputs.target, now_s);
+
+  Nearest nearest(snapshot.movers, model.settings.foresight.horizon_s);
+  const ObstacleView view = view_obstacles(model.settings, inputs.obstacles, now_s);
+  for (int i = 0; view.set && i < view.set->count; ++i) {
+    Obstacle obstacle = view.set->obstacles[i];
+    obstacle.capsule = moved(obstacle, view.age_s);
+    obstacle.capsule.radius_m += view.growth_m;
+    nearest.consider(obstacle);
+  }
+}
+
+}  // namespace sidestep

@@ -1,0 +1,42 @@
+#include "firmware/model/prediction.h"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+/// A ball around a capsule.
+struct Ball {
+  Vector3 centre;
+  double radius_m;
+
+  explicit Ball(const Capsule& capsule)
+      : centre(0.5 * (capsule.start + capsule.end)),
+        radius_m(0.5 * (capsule.end - capsule.start).norm() + capsule.radius_m) {}
+};
+
+}  // namespace
+
+double clearance_after(const Arm& arm, const Posture& posture, const Obstacle* obstacles, int count, double after_s,
+                       double enough_m) {
+  std::array<Capsule, kMaxShapes> links;
+  int moving = 0;
+  for (const LinkShape& shape : arm.shapes)
+    if (shape.body > 0) links[moving++] = placed(posture, shape);
+
+  double least_m = enough_m;
+  for (int o = 0; o < count; ++o) {
+    const Capsule then = moved(obstacles[o], after_s);
+    const Ball there(then);
+    for (int l = 0; l < moving; ++l) {
+      const Ball link(links[l]);
+      const double near_m = link.radius_m + there.radius_m + least_m;
+      if (near_m <= 0.0 || (link.centre - there.centre).squaredNorm() >= near_m * near_m) continue;
+      const NearestPoints points = nearest_on_axes(links[l], then);
+      least_m = std::min(least_m, (points.a - points.b).norm() - links[l].radius_m - then.radius_m);
+    }
+  }
+  return least_m;
+}
+
+}  // namespace sidestep
