@@ -131,6 +131,13 @@ void read_channels(Section section, Channels& channels) {
   read_channel(section, "arm_state", channels.arm_state);
   read_channel(section, "arm_command", channels.arm_command);
   read_channel(section, "controller_status", channels.controller_status);
+  read_channel(section, "loop_timing", channels.loop_timing);
+  section.finish();
+}
+
+void read_blackbox(Section section, BlackboxSettings& blackbox) {
+  section.number("seconds", blackbox.seconds, 1.0, 60.0);
+  section.text("folder", blackbox.folder);
   section.finish();
 }
 
@@ -159,6 +166,8 @@ Arm read_robot(Section robot, const std::string& config_file, const Overrides& o
 Config load_config(const std::string& file, const Overrides& overrides) {
   Section root = file.empty() ? Section::empty() : Section::of_file(file);
   Config config;
+  config.file = file;
+  config.overrides = overrides;
   Settings& settings = config.model.settings;
 
   std::string law = "sidestep";
@@ -170,10 +179,12 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_limits(root.section("limits"), config.model.arm);
   config.model.self_pairs = find_self_pairs(config.model.arm);
   read_control(root.section("control"), settings);
+  if (overrides.rate_hz > 0.0) settings.rate_hz = overrides.rate_hz;
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
+  read_blackbox(root.section("blackbox"), config.blackbox);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);
   read_switch(root.section("foresight"), settings.foresight_enabled);
