@@ -21,10 +21,11 @@ objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware/*/*.cpp))
 SIM      := $(call objects,$(call sources,host/sim/*.cpp))
+REPLAY   := $(call objects,$(wildcard host/replay/*.cpp))
 CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay
 LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -96,6 +97,9 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
