@@ -107,8 +107,13 @@ void read_ages(Section section, Ages& ages) {
   section.finish();
 }
 
-void read_control(Section control, Settings& settings) {
-  control.number("rate_hz", settings.rate_hz, 10.0, 2000.0);
+constexpr double kSlowest_hz = 10.0, kFastest_hz = 2000.0;
+
+void read_control(Section control, double rate_over_it_hz, Settings& settings) {
+  control.number("rate_hz", settings.rate_hz, kSlowest_hz, kFastest_hz);
+  if (rate_over_it_hz != 0.0) settings.rate_hz = rate_over_it_hz;
+  if (!(settings.rate_hz >= kSlowest_hz && settings.rate_hz <= kFastest_hz))
+    control.fail("rate_hz", "must be from 10 to 2000 (--rate, too)");
   control.positive("following_error_rad", settings.following_error_rad);
   control.finish();
 }
@@ -178,8 +183,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   config.model.arm = read_robot(root.section("robot"), file, overrides);
   read_limits(root.section("limits"), config.model.arm);
   config.model.self_pairs = find_self_pairs(config.model.arm);
-  read_control(root.section("control"), settings);
-  if (overrides.rate_hz > 0.0) settings.rate_hz = overrides.rate_hz;
+  read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
   read_obstacles(root.section("obstacles"), settings);

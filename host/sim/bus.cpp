@@ -166,8 +166,16 @@ Bus::Bus(const std::string& url, const std::string& log_file) : wire_(std::make_
 Bus::~Bus() = default;
 
 void Bus::publish(const World& world, int64_t utime) {
-  wire_->publish("TARGET", message_of(world.target, utime), utime);
-  wire_->publish("OBSTACLES", message_of(world.obstacles, utime), utime);
+  publish(world.target, utime);
+  publish(world.obstacles, utime);
+}
+
+void Bus::publish(const Target& target, int64_t utime) {
+  wire_->publish("TARGET", message_of(target, utime), utime);
+}
+
+void Bus::publish(const std::vector<Obstacle>& obstacles, int64_t utime) {
+  wire_->publish("OBSTACLES", message_of(obstacles, utime), utime);
 }
 
 void Bus::publish(const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {
