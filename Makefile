@@ -51,6 +51,9 @@ figures: all ## figures of the paper's three simulations, both laws, and the tra
 timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and under CPU stress, SECONDS (30) each
 	@$(PYTHON) host/tools/timing.py --duration $(or $(SECONDS),30)
 
+soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
+	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
+
 lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
@@ -61,7 +64,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures timing lint clean help
+.PHONY: all run test campaign figures timing soak lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
