@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 
 #include "firmware/io/config.h"
@@ -65,9 +66,7 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int start(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("controller"));
   spdlog::set_pattern("%n: %v");
   CLI::App app{
@@ -81,10 +80,16 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   catch_signals();
+  return run(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return run(arguments);
+    return start(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "controller: " << error.what() << "\n";
+    std::fprintf(stderr, "controller: %s\n", error.what());
     return 1;
   }
 }

@@ -21,8 +21,8 @@ std::string on_one_line(std::string text) {
 
 }  // namespace
 
-Section::Section(std::string file, std::string path, YAML::Node node)
-    : file_(std::move(file)), path_(std::move(path)), node_(std::move(node)) {
+Section::Section(std::string file, std::string path, const YAML::Node& node)
+    : file_(std::move(file)), path_(std::move(path)), node_(node) {
   if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
   if (!node_.IsMap()) {
     const std::string what = path_.empty() ? "the file" : fmt::format("'{}'", path_.substr(0, path_.size() - 1));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "host/replay/replay.h"
 
@@ -22,9 +23,7 @@ int replay(const std::string& file, const std::string& config_file) {
   return kDiffers;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "Runs the control cycles of a blackbox log again and compares the commands bit for bit. Needs the build and the "
       "configuration that wrote the log.");
@@ -37,10 +36,16 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kAgrees : kBadInput;
   }
+  return replay(file, config_file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return replay(file, config_file);
+    return run(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "replay: {}\n", error.what());
+    std::fprintf(stderr, "replay: %s\n", error.what());
     return kBadInput;
   }
 }
