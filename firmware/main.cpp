@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <cstdio>
 #include <iostream>
 
 #include "firmware/io/config.h"
@@ -89,7 +88,7 @@ int main(int argc, char** argv) {
   try {
     return start(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "controller: %s\n", error.what());
+    std::cerr << "controller: " << error.what() << "\n";
     return 1;
   }
 }
