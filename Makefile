@@ -21,10 +21,11 @@ objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware/*/*.cpp))
 SIM      := $(call objects,$(call sources,host/sim/*.cpp))
+REPLAY   := $(call objects,$(wildcard host/replay/*.cpp))
 CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay
 LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -47,6 +48,12 @@ campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEE
 figures: all ## figures of the paper's three simulations, both laws, and the trade-off over the gains
 	@$(PYTHON) host/tools/figures.py
 
+timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and under CPU stress, SECONDS (30) each
+	@$(PYTHON) host/tools/timing.py --duration $(or $(SECONDS),30)
+
+soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
+	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
+
 lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
@@ -57,7 +64,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures lint clean help
+.PHONY: all run test campaign figures timing soak lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -96,6 +103,9 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)

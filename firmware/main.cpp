@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <csignal>
 #include <iostream>
 
@@ -11,17 +10,16 @@
 
 namespace {
 
-std::atomic<bool> stop{false};
+sidestep::Requests requests;
 
-void ask_to_stop(int) {
-  stop = true;
+void take_request(int signal) {
+  (signal == SIGUSR1 ? requests.write_blackbox : requests.stop) = true;
 }
 
 void catch_signals() {
   struct sigaction action {};
-  action.sa_handler = ask_to_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = take_request;
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -36,13 +34,14 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config, "YAML file of the robot, for example firmware/config/lwa3.yaml");
   app.add_option("--law", arguments.overrides.law, "the law, over the configuration's")
       ->check(CLI::IsMember({"sidestep", "paper"}));
+  app.add_option("--rate", arguments.overrides.rate_hz, "cycles a second, over the configuration's")->type_name("HZ");
   app.add_flag("--lockstep", arguments.lockstep, "one cycle for every arm state, on the arm's clock");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM's own)");
   app.add_option("--urdf", arguments.overrides.urdf, "robot description, over the configuration's");
   app.add_option("--base", arguments.overrides.base, "base link, over the configuration's");
   app.add_option("--tip", arguments.overrides.tip, "tip link, the tool, over the configuration's");
   app.footer(
-      "Stops on Ctrl-C or SIGTERM: brakes the arm to rest, then exits with 0.\n"
+      "Stops on Ctrl-C or SIGTERM: brakes the arm to rest, then exits with 0. SIGUSR1 writes a blackbox log.\n"
       "Exit codes: 0 stopped as asked, 1 failed while running, 2 wrong arguments, configuration or URDF.");
 }
 
@@ -59,19 +58,14 @@ int run(const Arguments& arguments) {
   spdlog::info("{} joints, {} link shapes, {:g} Hz{}, law {}", config.model.arm.joints, config.model.arm.shapes.size(),
                settings.rate_hz, arguments.lockstep ? " in lockstep" : "",
                settings.law == Law::kPaper ? "paper" : "sidestep");
-  const LoopSummary summary = arguments.lockstep ? run_lockstep(config, arguments.lcm_url, stop)
-                                                 : run_realtime(config, arguments.lcm_url, stop);
-  spdlog::info(
-      "{} cycles, {} skipped, CPU time of a cycle {:.1f} us (worst {:.1f} us), worst wake-up {:.0f} us late, "
-      "{} messages rejected",
-      summary.cycles, summary.skipped_cycles, summary.cpu_mean_s * 1e6, summary.cpu_worst_s * 1e6,
-      summary.wake_latency_worst_s * 1e6, summary.rejected_messages);
+  const auto loop = arguments.lockstep ? run_lockstep : run_realtime;
+  const LoopSummary summary = loop(config, arguments.lcm_url, requests);
+  spdlog::info("{} cycles, {} skipped, {} messages rejected; times in\n{}", summary.timing.cycles,
+               summary.timing.skipped_cycles, summary.rejected_messages, table(summary.timing));
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int start(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("controller"));
   spdlog::set_pattern("%n: %v");
   CLI::App app{
@@ -85,8 +79,14 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   catch_signals();
+  return run(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return run(arguments);
+    return start(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "controller: " << error.what() << "\n";
     return 1;

@@ -165,7 +165,10 @@ void report_clearance(const Clearance& clearance, const Latest<ObstacleSet>& obs
 
 }  // namespace
 
-Result step(const Model& model, const State& state, const Inputs& inputs, double now_s) {
+Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe) {
+  const auto passed = [probe](Stage stage) {
+    if (probe) probe->passed(stage);
+  };
   Result result;
   Report& report = result.report;
   State& next = result.next = state;
@@ -177,19 +180,24 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     if (!state.commanding) start_from(model, arm, next);
 
     const Posture posture = forward(model.arm, arm.position_rad);
+    passed(Stage::kObserve);
     const ObstacleView obstacles = view_obstacles(model.settings, inputs.obstacles, now_s);
     const Reach reach{model.settings.shield.range_m, model.settings.shield.pass_horizon_s};
     const Clearance clearance = measure_clearance(model.arm, posture, obstacles, reach);
+    passed(Stage::kClearance);
     const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
 
     const Situation situation{model.arm, posture, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
     const Guide* guide = guide_to_follow(model, inputs);
     const Wish wish = ask_law(model, situation, next, guide, now_s);
+    passed(Stage::kLaw);
     const VelocityRange range = next_range(model, next, arm);
     const JointVector safe = keep_clear(model, situation, arm, range, wish, guide != nullptr, next);
+    passed(Stage::kShield);
     if (!safe.allFinite()) distrust(now_s, next);
     result.command = gate(model, next, arm, range, safe, report.limiting);
     remember(result.command, wish, next);
+    passed(Stage::kGate);
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);
     report_tool(posture, arm, report);

@@ -6,6 +6,7 @@
 
 #include "firmware/control/guide.h"
 #include "firmware/control/inputs.h"
+#include "firmware/control/stages.h"
 #include "firmware/control/supervisor.h"
 #include "firmware/model/clearance.h"
 
@@ -78,7 +79,8 @@ struct Result {
 /// One control cycle at time now_s: a pure function, bounded, without allocation, clock or I/O.
 ///
 /// now_s is on the clock of the inputs' receipt times. Call it once a period, Settings::period_s(); every command
-/// continues the last one within the joints' velocity, acceleration and position limits.
-Result step(const Model& model, const State& state, const Inputs& inputs, double now_s);
+/// continues the last one within the joints' velocity, acceleration and position limits. A probe hears when the stages
+/// end, as far as there are any before the first arm state; it changes nothing.
+Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe = nullptr);
 
 }  // namespace sidestep

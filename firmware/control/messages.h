@@ -41,6 +41,7 @@ enum Limiting : int32_t {
   kLimitingShield = 16,
   kLimitingNotRealtime = 32,
   kLimitingLate = 64,
+  kLimitingNoBlackbox = 1024,
 };
 
 }  // namespace sidestep

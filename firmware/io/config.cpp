@@ -109,8 +109,13 @@ void read_ages(Section section, Ages& ages) {
   section.finish();
 }
 
-void read_control(Section control, Settings& settings) {
-  control.number("rate_hz", settings.rate_hz, 10.0, 2000.0);
+constexpr double kSlowest_hz = 10.0, kFastest_hz = 2000.0;
+
+void read_control(Section control, double rate_over_it_hz, Settings& settings) {
+  control.number("rate_hz", settings.rate_hz, kSlowest_hz, kFastest_hz);
+  if (rate_over_it_hz != 0.0) settings.rate_hz = rate_over_it_hz;
+  if (!(settings.rate_hz >= kSlowest_hz && settings.rate_hz <= kFastest_hz))
+    control.fail("rate_hz", "must be from 10 to 2000 (--rate, too)");
   control.positive("following_error_rad", settings.following_error_rad);
   control.finish();
 }
@@ -133,6 +138,13 @@ void read_channels(Section section, Channels& channels) {
   read_channel(section, "arm_state", channels.arm_state);
   read_channel(section, "arm_command", channels.arm_command);
   read_channel(section, "controller_status", channels.controller_status);
+  read_channel(section, "loop_timing", channels.loop_timing);
+  section.finish();
+}
+
+void read_blackbox(Section section, BlackboxSettings& blackbox) {
+  section.number("seconds", blackbox.seconds, 1.0, 60.0);
+  section.text("folder", blackbox.folder);
   section.finish();
 }
 
@@ -163,6 +175,8 @@ Arm read_robot(Section robot, const std::string& config_file, const Overrides& o
 Config load_config(const std::string& file, const Overrides& overrides) {
   Section root = file.empty() ? Section::empty() : Section::of_file(file);
   Config config;
+  config.file = file;
+  config.overrides = overrides;
   Settings& settings = config.model.settings;
 
   std::string law = "sidestep";
@@ -173,11 +187,12 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   config.model.arm = read_robot(root.section("robot"), file, overrides);
   read_limits(root.section("limits"), config.model.arm);
   config.model.self_pairs = find_self_pairs(config.model.arm);
-  read_control(root.section("control"), settings);
+  read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
+  read_blackbox(root.section("blackbox"), config.blackbox);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);
   read_foresight(root.section("foresight"), settings.foresight);

@@ -13,20 +13,31 @@ struct Channels {
   std::string arm_state = "ARM_STATE";
   std::string arm_command = "ARM_COMMAND";
   std::string controller_status = "CONTROLLER_STATUS";
+  std::string loop_timing = "LOOP_TIMING";
 };
 
-/// What the command line may say over the configuration; empty: nothing.
+/// Logs of the last seconds before a fault or a request; config section `blackbox:`.
+struct BlackboxSettings {
+  double seconds = 10.0;
+  std::string folder = "blackbox";  ///< from the working directory; made when the first log is written
+};
+
+/// What the command line may say over the configuration; empty or zero: nothing.
 struct Overrides {
   std::string law;
   std::string urdf;
   std::string base;
   std::string tip;
+  double rate_hz = 0.0;
 };
 
 /// A configuration, complete and checked.
 struct Config {
   Model model;
   Channels channels;
+  BlackboxSettings blackbox;
+  std::string file;  ///< what it was read from, with
+  Overrides overrides;
 };
 
 /// Reads the YAML file (none when the name is empty: defaults, and the arm from the overrides) and the arm's URDF.

@@ -10,9 +10,19 @@
 #include <stdexcept>
 
 namespace sidestep {
+namespace {
 
-Section::Section(std::string file, std::string path, YAML::Node node)
-    : file_(std::move(file)), path_(std::move(path)), node_(std::move(node)) {
+/// A scrambled file can make anything part of a message; it stays one line all the same.
+std::string on_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  return text;
+}
+
+}  // namespace
+
+Section::Section(std::string file, std::string path, const YAML::Node& node)
+    : file_(std::move(file)), path_(std::move(path)), node_(node) {
   if (node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
   if (!node_.IsMap()) {
     const std::string what = path_.empty() ? "the file" : fmt::format("'{}'", path_.substr(0, path_.size() - 1));
@@ -28,18 +38,16 @@ Section Section::of_file(const std::string& file) {
   try {
     return Section(file, "", YAML::Load(text.str()));
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, error.msg));
+    throw std::runtime_error(
+        fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, on_one_line(error.msg)));
   }
 }
 
 void Section::fail(const std::string& key, const std::string& what) const {
-  // A scrambled file can make anything a key; the message stays one line all the same.
   const size_t longest = 60;
   std::string name = path_ + key;
   if (name.size() > longest) name.replace(longest, std::string::npos, "...");
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
-  throw std::runtime_error(fmt::format("{}: {}: {}", file_, name, what));
+  throw std::runtime_error(fmt::format("{}: {}: {}", file_, on_one_line(name), what));
 }
 
 YAML::Node Section::take(const std::string& key) {

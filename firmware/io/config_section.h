@@ -44,7 +44,7 @@ class Section {
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
 
  private:
-  Section(std::string file, std::string path, YAML::Node node);
+  Section(std::string file, std::string path, const YAML::Node& node);
   /// The value of a key, or null; remembers that the key is known.
   YAML::Node take(const std::string& key);
   double to_number(const std::string& key, const YAML::Node& node) const;

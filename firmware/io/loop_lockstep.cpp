@@ -1,10 +1,9 @@
-#include <algorithm>
 #include <memory>
 
 #include "firmware/io/admission.h"
+#include "firmware/io/cycle_runner.h"
 #include "firmware/io/loop.h"
 #include "firmware/io/realtime.h"
-#include "firmware/io/wire.h"
 
 namespace sidestep {
 namespace {
@@ -14,12 +13,14 @@ constexpr double kFarewell_s = 0.5;
 
 class Lockstep {
  public:
-  Lockstep(const Config& config, const std::string& lcm_url, const std::atomic<bool>& stop)
-      : model_(config.model),
+  Lockstep(const Config& config, const std::string& lcm_url, Requests& requests)
+      : blackbox_(config, requests.write_blackbox),
+        adviser_(config.model, true),
         wire_(lcm_url, config.channels, config.model.arm),
+        runner_(config, wire_, blackbox_, adviser_, true, kLimitingNothing),
         admission_(config.model.arm.joints, config.model.settings.ages, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
-        stop_(stop) {
+        stop_(requests.stop) {
     wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });
     wire_.on_target([this](const void* bytes, size_t size) { receive(bytes, size, target_); });
     wire_.on_obstacles([this](const void* bytes, size_t size) { receive(bytes, size, *obstacles_); });
@@ -27,15 +28,13 @@ class Lockstep {
 
   LoopSummary run() {
     double last_cycle_s = monotonic_s();
-    while (!(stop_ && (!state_.commanding || state_.velocity_radps.isZero(0.0)))) {
-      const int64_t cycles = summary_.cycles;
+    while (!(stop_ && runner_.at_rest())) {
+      const int64_t cycles = runner_.timing().cycles;
       wire_.receive(50);
-      if (summary_.cycles != cycles || !stop_) last_cycle_s = monotonic_s();
+      if (runner_.timing().cycles != cycles || !stop_) last_cycle_s = monotonic_s();
       if (monotonic_s() - last_cycle_s > kFarewell_s) break;
     }
-    summary_.rejected_messages = admission_.rejected();
-    summary_.cpu_mean_s /= static_cast<double>(std::max<int64_t>(1, summary_.cycles));
-    return summary_;
+    return {runner_.timing(), admission_.rejected()};
   }
 
  private:
@@ -43,69 +42,57 @@ class Lockstep {
   /// does not spoil the one in use.
   template <typename Message>
   struct Pending {
-    Message slots[2];
+    Mail<Message> slots[2];
     int current = 0;
     bool arrived = false;
-    Latest<Message> latest;
 
-    void take(double now_s) {
-      if (!arrived) return;
-      latest = {&slots[current], now_s, latest.count + 1};
+    Mail<Message>& mail() { return slots[current]; }
+
+    const Mail<Message>& take(double now_s) {
+      if (arrived) mail().received_s = now_s;
       arrived = false;
+      return mail();
     }
   };
 
   template <typename Message>
-  void receive(const void* bytes, size_t size, Pending<Message>& pending) {
-    const int spare = 1 - pending.current;
-    if (!admission_.admit(bytes, size, now_s_, pending.slots[spare])) return;
-    pending.current = spare;
-    pending.arrived = true;
+  bool receive(const void* bytes, size_t size, Pending<Message>& pending) {
+    Mail<Message>& spare = pending.slots[1 - pending.current];
+    if (!admission_.admit(bytes, size, now_s_, spare.message)) return false;
+    const auto* first = static_cast<const uint8_t*>(bytes);
+    spare.bytes.assign(first, first + size);
+    spare.count = pending.mail().count + 1;
+    pending.current = 1 - pending.current;
+    return pending.arrived = true;
   }
 
   void cycle(const void* bytes, size_t size) {
-    const double cpu_s = thread_cpu_s();
-    if (!admission_.admit(bytes, size, now_s_, arm_)) return;
-    now_s_ = static_cast<double>(arm_.utime) * 1e-6;
-    target_.take(now_s_);
-    obstacles_->take(now_s_);
-    Inputs inputs;
-    inputs.arm = {&arm_, now_s_, ++arm_count_};
-    inputs.target = target_.latest;
-    inputs.obstacles = obstacles_->latest;
-    inputs.stop = stop_;
-    const Result result = step(model_, state_, inputs, now_s_);
-    state_ = result.next;
-
-    CycleRecord record;
-    record.utime = arm_.utime;
-    record.seq = ++summary_.cycles;
-    record.rejected_messages = admission_.rejected();
-    record.rejected_reason = admission_.last_reason();
-    wire_.publish(result.command, record.utime, record.seq);
-    record.cycle_time_s = thread_cpu_s() - cpu_s;
-    wire_.publish(result.report, record);
-    summary_.cpu_mean_s += record.cycle_time_s;
-    summary_.cpu_worst_s = std::max(summary_.cpu_worst_s, record.cycle_time_s);
+    if (!receive(bytes, size, arm_)) return;
+    CycleRunner::Occasion occasion;
+    occasion.utime = arm_.mail().message.utime;
+    occasion.now_s = now_s_ = static_cast<double>(occasion.utime) * 1e-6;
+    occasion.stop = stop_;
+    occasion.rejected_messages = admission_.rejected();
+    occasion.rejected_reason = admission_.last_reason();
+    runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, occasion);
   }
 
-  const Model& model_;
+  Blackbox blackbox_;
+  Adviser adviser_;
   Wire wire_;
+  CycleRunner runner_;
   Admission admission_;
+  Pending<ArmState> arm_;
   Pending<Target> target_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
-  ArmState arm_;
-  int64_t arm_count_ = 0;
   double now_s_ = 0.0;
-  State state_;
-  LoopSummary summary_;
   const std::atomic<bool>& stop_;
 };
 
 }  // namespace
 
-LoopSummary run_lockstep(const Config& config, const std::string& lcm_url, const std::atomic<bool>& stop) {
-  return std::make_unique<Lockstep>(config, lcm_url, stop)->run();
+LoopSummary run_lockstep(const Config& config, const std::string& lcm_url, Requests& requests) {
+  return std::make_unique<Lockstep>(config, lcm_url, requests)->run();
 }
 
 }  // namespace sidestep

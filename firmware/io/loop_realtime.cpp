@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "firmware/io/admission.h"
+#include "firmware/io/cycle_runner.h"
 #include "firmware/io/loop.h"
 #include "firmware/io/mailbox.h"
 #include "firmware/io/realtime.h"
-#include "firmware/io/wire.h"
 
 namespace sidestep {
 namespace {
@@ -17,19 +17,6 @@ namespace {
 constexpr int kLoopPriority = 80;
 constexpr int kReceivePriority = 70;  // below the loop: a flood of messages must not delay a cycle
 constexpr double kLongestBraking_s = 5.0;
-
-template <typename Message>
-struct Mail {
-  Message message;
-  double received_s = 0.0;
-  int64_t count = 0;  ///< 0: nothing yet
-};
-
-template <typename Message>
-Latest<Message> read(Mailbox<Mail<Message>>& mailbox) {
-  const Mail<Message>& mail = mailbox.latest();
-  return {mail.count > 0 ? &mail.message : nullptr, mail.received_s, mail.count};
-}
 
 /// The receiving side: checks what comes in and puts the newest valid message of each kind into its mailbox.
 class Receiver {
@@ -56,6 +43,8 @@ class Receiver {
     Mail<Message>& mail = mailbox.draft();
     const double now_s = monotonic_s();
     if (admission_.admit(bytes, size, now_s, mail.message)) {
+      const auto* first = static_cast<const uint8_t*>(bytes);
+      mail.bytes.assign(first, first + size);
       mail.received_s = now_s;
       mail.count = ++count_;
       mailbox.post();
@@ -72,68 +61,45 @@ class Receiver {
 /// The loop itself, on the thread that calls run().
 class Loop {
  public:
-  Loop(const Model& model, Wire& wire, Receiver& receiver, int limiting)
-      : model_(model), wire_(wire), receiver_(receiver), limiting_(limiting) {}
+  Loop(CycleRunner& runner, Receiver& receiver, double period_s)
+      : runner_(runner), receiver_(receiver), period_s_(period_s) {}
 
-  LoopSummary run(const std::atomic<bool>& stop) {
-    const double period_s = model_.settings.period_s();
-    double wake_s = monotonic_s() + period_s;
+  void run(const std::atomic<bool>& stop) {
+    double wake_s = monotonic_s() + period_s_;
     double stop_s = 0.0;
     while (true) {
       sleep_until(wake_s);
       const double late_s = monotonic_s() - wake_s;
       if (late_s < 0.0) continue;  // a signal woke it
       // Periods that have passed altogether are counted and left out, never caught up.
-      const int skipped = static_cast<int>(std::floor(late_s / period_s));
+      const int skipped = static_cast<int>(std::floor(late_s / period_s_));
       cycle(wake_s + late_s, late_s, skipped, stop);
-      wake_s += (skipped + 1) * period_s;
+      wake_s += (skipped + 1) * period_s_;
 
       if (!stop) continue;
       if (stop_s == 0.0) stop_s = wake_s;
-      if (!state_.commanding || state_.velocity_radps.isZero(0.0) || wake_s - stop_s > kLongestBraking_s) break;
+      if (runner_.at_rest() || wake_s - stop_s > kLongestBraking_s) break;
     }
-    summary_.rejected_messages = receiver_.rejected;
-    summary_.cpu_mean_s /= static_cast<double>(std::max<int64_t>(1, summary_.cycles));
-    return summary_;
   }
 
  private:
   void cycle(double now_s, double late_s, int skipped, bool stop) {
-    const double cpu_s = thread_cpu_s();
-    Inputs inputs;
-    inputs.arm = read(receiver_.arm);
-    inputs.target = read(receiver_.target);
-    inputs.obstacles = read(receiver_.obstacles);
+    const Post post{receiver_.arm.latest(), receiver_.target.latest(), receiver_.obstacles.latest()};
+    CycleRunner::Occasion occasion;
     // Received between waking and reading: as if just now.
-    inputs.skipped_cycles = skipped;
-    inputs.stop = stop;
-    now_s = std::max({now_s, inputs.arm.received_s, inputs.target.received_s, inputs.obstacles.received_s});
-    Result result = step(model_, state_, inputs, now_s);
-    state_ = result.next;
-    result.report.limiting |= limiting_;
-
-    CycleRecord record;
-    record.utime = static_cast<int64_t>(now_s * 1e6);
-    record.seq = ++summary_.cycles;
-    record.wake_latency_s = late_s;
-    record.skipped_cycles = summary_.skipped_cycles += skipped;
-    record.rejected_messages = receiver_.rejected;
-    record.rejected_reason = receiver_.rejected_reason;
-    if (result.commanding) wire_.publish(result.command, record.utime, record.seq);
-    record.cycle_time_s = thread_cpu_s() - cpu_s;
-    wire_.publish(result.report, record);
-
-    summary_.cpu_mean_s += record.cycle_time_s;
-    summary_.cpu_worst_s = std::max(summary_.cpu_worst_s, record.cycle_time_s);
-    summary_.wake_latency_worst_s = std::max(summary_.wake_latency_worst_s, late_s);
+    occasion.now_s = std::max({now_s, post.arm.received_s, post.target.received_s, post.obstacles.received_s});
+    occasion.utime = static_cast<int64_t>(occasion.now_s * 1e6);
+    occasion.skipped_cycles = skipped;
+    occasion.wake_latency_s = late_s;
+    occasion.stop = stop;
+    occasion.rejected_messages = receiver_.rejected;
+    occasion.rejected_reason = receiver_.rejected_reason;
+    runner_.run(post, occasion);
   }
 
-  const Model& model_;
-  Wire& wire_;
+  CycleRunner& runner_;
   Receiver& receiver_;
-  int limiting_;
-  State state_;
-  LoopSummary summary_;
+  double period_s_;
 };
 
 /// Asks for a service that a real-time loop needs. Without the permission the loop runs all the same, says so once
@@ -146,22 +112,25 @@ void request(bool granted, const char* what, const std::string& why_not, int& li
 
 }  // namespace
 
-LoopSummary run_realtime(const Config& config, const std::string& lcm_url, const std::atomic<bool>& stop) {
+LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Requests& requests) {
   std::string why_not;
   int limiting = kLimitingNothing;
   request(lock_memory(why_not), "locking memory", why_not, limiting);
+  Blackbox blackbox(config, requests.write_blackbox);
+  Adviser adviser(config.model, false);
   // LCM starts a thread at the first subscription; it and the receiver inherit the priority of this one.
   request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
 
   Wire wire(lcm_url, config.channels, config.model.arm);
   const auto receiver = std::make_unique<Receiver>(wire, config.model.arm.joints, config.model.settings.ages);
+  CycleRunner runner(config, wire, blackbox, adviser, false, limiting);
   std::atomic<bool> end{false};
   std::thread receiving([&] { receiver->run(end); });
   use_fifo(kLoopPriority, why_not);
-  const LoopSummary summary = Loop(config.model, wire, *receiver, limiting).run(stop);
+  Loop(runner, *receiver, config.model.settings.period_s()).run(requests.stop);
   end = true;
   receiving.join();
-  return summary;
+  return {runner.timing(), receiver->rejected};
 }
 
 }  // namespace sidestep

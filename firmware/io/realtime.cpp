@@ -33,6 +33,10 @@ double monotonic_s() {
   return seconds(CLOCK_MONOTONIC);
 }
 
+double wall_s() {
+  return seconds(CLOCK_REALTIME);
+}
+
 double thread_cpu_s() {
   return seconds(CLOCK_THREAD_CPUTIME_ID);
 }

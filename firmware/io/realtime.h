@@ -10,6 +10,9 @@ namespace sidestep {
 /// Seconds on the monotonic clock.
 double monotonic_s();
 
+/// Seconds since 1970; may be set back and forth by others.
+double wall_s();
+
 /// CPU time that this thread has used, s.
 double thread_cpu_s();
 

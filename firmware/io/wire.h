@@ -4,26 +4,15 @@
 #include <memory>
 #include <string>
 
-#include "firmware/control/cycle.h"
 #include "firmware/io/config.h"
+#include "firmware/io/encoder.h"
 
 namespace sidestep {
-
-/// What the shell of the controller knows about a cycle beyond its report.
-struct CycleRecord {
-  int64_t utime = 0;
-  int64_t seq = 0;
-  double cycle_time_s = 0.0;
-  double wake_latency_s = 0.0;
-  int64_t skipped_cycles = 0;
-  int64_t rejected_messages = 0;
-  const char* rejected_reason = "";  ///< shown behind the message while not empty
-};
 
 /// Bytes of a message, valid during the call.
 using ByteHandler = std::function<void(const void* bytes, size_t size)>;
 
-/// The LCM network: raw bytes in, commands and reports out. Nothing else includes LCM.
+/// The LCM network: raw bytes in, commands and reports out.
 class Wire {
  public:
   /// url empty: LCM's own default. Throws std::runtime_error when the network cannot be used.
@@ -41,6 +30,7 @@ class Wire {
   /// Send without allocating; may be called from another thread than receive().
   void publish(const Command& command, int64_t utime, int64_t seq);
   void publish(const Report& report, const CycleRecord& record);
+  void publish(const Timing& timing, int64_t utime);
 
  private:
   struct Network;

@@ -71,13 +71,13 @@ bool has_size_of_command(const uint8_t* bytes, int64_t size) {
 }
 
 bool has_size_of_status(const uint8_t* bytes, int64_t size) {
-  constexpr int64_t kLinkAt = 101, kBetweenTexts = 56;  // of the fixed fields before and between the two texts
+  constexpr int64_t kLinkAt = 101, kBetweenTexts = 56, kAfterTexts = 9;  // the fixed fields around the two texts
   if (size < kLinkAt + 4) return false;
   const int64_t link = int32_at(bytes, kLinkAt);
   const int64_t message_at = kLinkAt + 4 + link + kBetweenTexts;
   if (link < 1 || size < message_at + 4) return false;
   const int64_t message = int32_at(bytes, message_at);
-  return message >= 1 && size == message_at + 4 + message;
+  return message >= 1 && size == message_at + 4 + message + kAfterTexts;
 }
 
 std::optional<Command> decode_command(const uint8_t* bytes, int size) {
@@ -166,8 +166,16 @@ Bus::Bus(const std::string& url, const std::string& log_file) : wire_(std::make_
 Bus::~Bus() = default;
 
 void Bus::publish(const World& world, int64_t utime) {
-  wire_->publish("TARGET", message_of(world.target, utime), utime);
-  wire_->publish("OBSTACLES", message_of(world.obstacles, utime), utime);
+  publish(world.target, utime);
+  publish(world.obstacles, utime);
+}
+
+void Bus::publish(const Target& target, int64_t utime) {
+  wire_->publish("TARGET", message_of(target, utime), utime);
+}
+
+void Bus::publish(const std::vector<Obstacle>& obstacles, int64_t utime) {
+  wire_->publish("OBSTACLES", message_of(obstacles, utime), utime);
 }
 
 void Bus::publish(const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {

@@ -20,6 +20,8 @@ class Bus {
 
   /// TARGET, then OBSTACLES.
   void publish(const World& world, int64_t utime);
+  void publish(const Target& target, int64_t utime);
+  void publish(const std::vector<Obstacle>& obstacles, int64_t utime);
   /// ARM_STATE.
   void publish(const JointVector& q_rad, const JointVector& qd_radps, int64_t utime);
 

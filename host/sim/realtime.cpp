@@ -19,6 +19,7 @@ class RealTime {
   RealTime(Run& run, Bus& bus)
       : run_(run),
         bus_(bus),
+        sensing_(run.scenario().sensing),
         ticks_(std::max<int64_t>(1, run.scenario().period_us / kTickUs)),
         origin_us_(monotonic_us()),
         plant_us_(origin_us_),
@@ -61,15 +62,26 @@ class RealTime {
   void on_tick(int64_t due_us, bool publish) {
     advance_to(due_us);
     const bool starts_period = tick_ % ticks_ == 0;
-    if (publish && starts_period) bus_.publish(run_.world(), due_us);
-    if (publish) bus_.publish(run_.plant.q_rad(), run_.plant.qd_radps(), due_us);
+    if (publish && starts_period) publish_world(due_us);
+    if (publish) publish_arm(due_us);
     if (!starts_period) return;
     if (started_) run_.record(run_.plant.q_rad(), run_.plant.qd_radps());
     if (!started_) run_.show_waiting();
   }
 
+  void publish_world(int64_t due_us) {
+    const World world = run_.world();
+    if (const auto target = sensing_.target(world.target)) bus_.publish(*target, due_us);
+    if (const auto obstacles = sensing_.obstacles(world.obstacles)) bus_.publish(*obstacles, due_us);
+  }
+
+  void publish_arm(int64_t due_us) {
+    if (const auto q_rad = sensing_.joints(run_.plant.q_rad())) bus_.publish(*q_rad, run_.plant.qd_radps(), due_us);
+  }
+
   Run& run_;
   Bus& bus_;
+  Sensing sensing_;
   const int64_t ticks_;  // per control period
   int64_t origin_us_;    // of tick 0; moves to t = 0 once
   int64_t tick_ = 0;

@@ -62,6 +62,16 @@ PlantSpec read_plant(Fields fields, int joints) {
   return plant;
 }
 
+SensingSpec read_sensing(Fields fields) {
+  SensingSpec sensing;
+  sensing.joint_noise_rad = fields.number("joint_noise_rad", {0.0, 1.0});
+  sensing.obstacle_noise_m = fields.number("obstacle_noise_m", {0.0, 1.0});
+  sensing.lost_share = fields.number("lost_share", {0.0, 1.0});
+  sensing.seed = fields.whole("seed", {0, 2147483647});
+  fields.done();
+  return sensing;
+}
+
 // From position_m and velocity_mps at t = 0 through the waypoints [t_s, x, y, z, vx, vy, vz].
 std::shared_ptr<const Path> read_path(Fields& fields, const Motion& start) {
   Path path{{0.0, start.position_m, start.velocity_mps}};
@@ -171,6 +181,7 @@ Scenario load_scenario(const std::string& file) {
   read_times(fields, scenario);
   scenario.start_rad = fields.numbers("start_rad", 1, kMaxJoints, {-100.0, 100.0});
   scenario.plant = read_plant(fields.section("plant"), static_cast<int>(scenario.start_rad.size()));
+  if (fields.has("sensing")) scenario.sensing = read_sensing(fields.section("sensing"));
   scenario.world.target = read_target(fields.section("target"));
   scenario.world.obstacles = read_obstacles(fields);
   if (fields.has("expect")) scenario.expect = read_expectations(fields.section("expect"));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host/sim/plant.h"
+#include "host/sim/sensing.h"
 #include "host/sim/world.h"
 
 namespace sidestep::sim {
@@ -38,6 +39,7 @@ struct Scenario {
   int periods = 0;  ///< the scenario runs from t = 0 to periods * period
   JointVector start_rad;
   PlantSpec plant;
+  SensingSpec sensing;
   World world;  ///< at t = 0
   Expectations expect;
   Published published;

@@ -18,8 +18,9 @@ JointVector to_joints(const std::vector<double>& values) {
 
 }  // namespace
 
-LiveArm::LiveArm(const JointLimits& limits, const JointVector& start_rad)
-    : commands(limits, 0.01),
+LiveArm::LiveArm(const JointLimits& limits, const JointVector& start_rad, double period_s)
+    : commands(limits, period_s),
+      period_s_(period_s),
       position_rad_(start_rad),
       velocity_radps_(JointVector::Zero(start_rad.size())),
       next_(Clock::now()) {
@@ -43,7 +44,7 @@ void LiveArm::follow() {
     position_rad_ = to_joints(command.joint_position);
     velocity_radps_ = to_joints(command.joint_velocity);
     lost_ += lost;
-    if (lost > 0) commands.begin(position_rad_ - 0.01 * velocity_radps_, velocity_radps_);
+    if (lost > 0) commands.begin(position_rad_ - period_s_ * velocity_radps_, velocity_radps_);
     commands.feed(position_rad_, velocity_radps_);
   }
 }

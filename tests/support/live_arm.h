@@ -12,7 +12,8 @@ namespace sidestep::test {
 /// is sent may be changed at any time.
 class LiveArm {
  public:
-  LiveArm(const JointLimits& limits, const JointVector& start_rad);
+  /// period_s: of the commands.
+  LiveArm(const JointLimits& limits, const JointVector& start_rad, double period_s = 0.01);
 
   bool arm_speaks = true, target_speaks = true, obstacles_speak = true;
   Vector3 target_m = Vector3::Zero();
@@ -34,6 +35,7 @@ class LiveArm {
   void follow();
   int64_t silent_between(int64_t one, int64_t other) const;
 
+  double period_s_;
   JointVector position_rad_, velocity_radps_;
   std::chrono::steady_clock::time_point next_;
   size_t followed_ = 0;

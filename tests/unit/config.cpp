@@ -57,6 +57,7 @@ const Key kNumbers[] = {
     {"obstacles", "speed_bound_mps", 1.5, [](const Config& c) { return c.model.settings.obstacle_speed_bound_mps; }},
     {"limits", "velocity_radps", 1.5, [](const Config& c) { return c.model.arm.limits.velocity_radps[6]; }},
     {"limits", "acceleration_radps2", 1.5, [](const Config& c) { return c.model.arm.limits.acceleration_radps2[6]; }},
+    {"blackbox", "seconds", 25, [](const Config& c) { return c.blackbox.seconds; }},
     {"limits", "lower_rad", -1.5, [](const Config& c) { return c.model.arm.limits.lower_rad[6]; }},
     {"limits", "upper_rad", 1.5, [](const Config& c) { return c.model.arm.limits.upper_rad[6]; }},
 };
@@ -85,11 +86,13 @@ void every_word_arrives_where_it_belongs(void**) {
   assert_false(load("obstacles: {wait_for_first: false}").model.settings.wait_for_obstacles);
   assert_true(load("obstacles: {wait_for_first: true}").model.settings.wait_for_obstacles);
   const Channels channels =
-      load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E}").channels;
-  assert_string_equal(
-      (channels.target + channels.obstacles + channels.arm_state + channels.arm_command + channels.controller_status)
-          .c_str(),
-      "ABCDE");
+      load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F}")
+          .channels;
+  assert_string_equal((channels.target + channels.obstacles + channels.arm_state + channels.arm_command +
+                       channels.controller_status + channels.loop_timing)
+                          .c_str(),
+                      "ABCDEF");
+  assert_string_equal(load("blackbox: {folder: here}").blackbox.folder.c_str(), "here");
 }
 
 void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {

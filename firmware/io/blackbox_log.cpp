@@ -1,0 +1,131 @@
+#include "firmware/io/blackbox_log.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <lcm/lcm-cpp.hpp>
+#include <sidestep/blackbox_t.hpp>
+#include <stdexcept>
+
+#include "firmware/io/realtime.h"
+
+namespace sidestep {
+namespace {
+
+using Record = RecordRing::Copy::Record;
+using Messages = std::array<Record, kMessageKinds>;
+
+/// Calls use(cycle, messages) for every cycle since a time all of whose messages are there. `messages` are those that
+/// came after the cycle before, the others are empty.
+template <typename Use>
+void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
+  Messages messages;
+  std::array<bool, kMessageKinds> seen{};
+  const auto lacks = [&seen](const auto& latest, Kept kind) {
+    return latest.message && !seen[static_cast<size_t>(kind)];
+  };
+  Record record;
+  for (records.rewind(); records.next(record);) {
+    if (record.kind != static_cast<uint8_t>(Kept::kCycle)) {
+      messages[record.kind] = record;
+      seen[record.kind] = true;
+      continue;
+    }
+    KeptCycle cycle;
+    std::memcpy(static_cast<void*>(&cycle), record.bytes, sizeof cycle);
+    const Inputs& inputs = cycle.moment.inputs;
+    if (cycle.moment.now_s < since_s || lacks(inputs.arm, Kept::kArmState) || lacks(inputs.target, Kept::kTarget) ||
+        lacks(inputs.obstacles, Kept::kObstacles))
+      continue;
+    use(cycle, messages);
+    messages = {};
+  }
+}
+
+class Log {
+ public:
+  Log(const std::string& file, const Config& config, double newest_s)
+      : file_(file),
+        log_(file, "w"),
+        channels_(config.channels),
+        encoder_(config.model.arm),
+        epoch_s_(wall_s() - newest_s) {
+    if (!log_.good()) throw std::runtime_error(fmt::format("{}: {}", file, std::strerror(errno)));
+  }
+
+  void write(const std::string& channel, double at_s, const Packet& packet) {
+    lcm::LogEvent event{0, static_cast<int64_t>((epoch_s_ + at_s) * 1e6), channel, static_cast<int32_t>(packet.size),
+                        const_cast<uint8_t*>(packet.bytes)};
+    if (log_.writeEvent(&event) != 0) give_up();
+  }
+
+  void write(const std::string& channel, double at_s, const Record& record) {
+    if (record.bytes) write(channel, at_s, Packet{record.bytes, record.size});
+  }
+
+  void write(const KeptCycle& cycle, const Messages& messages) {
+    const Moment& moment = cycle.moment;
+    write(channels_.arm_state, moment.inputs.arm.received_s, messages[0]);
+    write(channels_.target, moment.inputs.target.received_s, messages[1]);
+    write(channels_.obstacles, moment.inputs.obstacles.received_s, messages[2]);
+    MomentImage image;
+    to_image(moment, image);
+    write(kMomentChannel, moment.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
+    if (cycle.commanded)
+      write(channels_.arm_command, moment.now_s, encoder_.encode(cycle.command, moment.utime, moment.seq));
+    write(channels_.controller_status, moment.now_s, encoder_.encode(cycle.report, cycle.record));
+  }
+
+  void finish() {
+    if (std::fflush(log_.getFilePtr()) != 0) give_up();
+  }
+
+ private:
+  [[noreturn]] void give_up() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
+
+  std::string file_;
+  lcm::LogFile log_;
+  Channels channels_;
+  Encoder encoder_;
+  double epoch_s_;
+};
+
+std::vector<uint8_t> header(const Config& config, const std::string& reason, int64_t utime, int64_t cycles) {
+  blackbox_t message;
+  message.utime = utime;
+  message.reason = reason;
+  message.config = config.file;
+  message.law = config.overrides.law;
+  message.urdf = config.overrides.urdf;
+  message.base = config.overrides.base;
+  message.tip = config.overrides.tip;
+  message.rate_hz = config.overrides.rate_hz;
+  message.cycles = cycles;
+  message.image_bytes = sizeof(MomentImage);
+  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+}  // namespace
+
+int64_t write_blackbox_log(const std::string& file, const Config& config, const std::string& reason,
+                           RecordRing::Copy& records) {
+  Moment newest;
+  for_each_cycle(records, -HUGE_VAL, [&](const KeptCycle& cycle, const Messages&) { newest = cycle.moment; });
+  const double since_s = newest.now_s - config.blackbox.seconds;
+  int64_t cycles = 0;
+  for_each_cycle(records, since_s, [&](const KeptCycle&, const Messages&) { ++cycles; });
+
+  Log log(file, config, newest.now_s);
+  const std::vector<uint8_t> first = header(config, reason, newest.utime, cycles);
+  log.write(kBlackboxChannel, newest.now_s, Packet{first.data(), first.size()});
+  for_each_cycle(records, since_s,
+                 [&](const KeptCycle& cycle, const Messages& messages) { log.write(cycle, messages); });
+  log.finish();
+  return cycles;
+}
+
+}  // namespace sidestep

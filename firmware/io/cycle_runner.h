@@ -1,0 +1,48 @@
+#pragma once
+
+#include "firmware/io/adviser.h"
+#include "firmware/io/blackbox.h"
+#include "firmware/io/wire.h"
+
+namespace sidestep {
+
+/// Runs cycle after cycle: step(), its command and report onto the wire, its times into the books, all of it into the
+/// blackbox. Each of the two loops owns one.
+class CycleRunner {
+ public:
+  /// standing: what limits every cycle (bits of Limiting). All arguments outlive this.
+  CycleRunner(const Config& config, Wire& wire, Blackbox& blackbox, Adviser& adviser, bool lockstep, int standing);
+
+  /// When and how a cycle takes place.
+  struct Occasion {
+    double now_s = 0.0;
+    int64_t utime = 0;
+    int skipped_cycles = 0;  ///< since the one before
+    double wake_latency_s = 0.0;
+    bool stop = false;
+    int64_t rejected_messages = 0;
+    const char* rejected_reason = "";
+  };
+  void run(const Post& post, const Occasion& occasion);
+
+  /// Nothing moves by command.
+  bool at_rest() const { return !state_.commanding || state_.velocity_radps.isZero(0.0); }
+
+  const Timing& timing() const { return timing_; }
+
+ private:
+  void publish_timing(const Occasion& occasion);
+
+  const Model& model_;
+  Wire& wire_;
+  Blackbox& blackbox_;
+  Adviser& adviser_;
+  bool lockstep_;
+  int standing_;
+  State state_;
+  Timing timing_;
+  CycleClock clock_{timing_};
+  double timing_published_s_ = 0.0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,113 @@
+#include "firmware/io/encoder.h"
+
+#include <array>
+#include <sidestep/controller_status_t.hpp>
+#include <sidestep/joint_command_t.hpp>
+#include <sidestep/loop_timing_t.hpp>
+#include <vector>
+
+namespace sidestep {
+namespace {
+
+constexpr size_t kLargest_bytes = 1024;
+constexpr size_t kLongestText = 200;
+
+void copy(const Vector3& from, double* to) {
+  Eigen::Map<Vector3>(to, 3) = from;
+}
+
+durations_t summary(const Histogram& histogram) {
+  durations_t durations;
+  durations.p50 = histogram.quantile_s(0.5);
+  durations.p99 = histogram.quantile_s(0.99);
+  durations.p999 = histogram.quantile_s(0.999);
+  durations.worst = histogram.worst_s();
+  return durations;
+}
+
+}  // namespace
+
+struct Encoder::Messages {
+  std::vector<std::string> shape_links;
+  joint_command_t command;
+  controller_status_t status;
+  loop_timing_t timing;
+  std::array<uint8_t, kLargest_bytes> bytes;
+
+  template <typename Message>
+  Packet packet(const Message& message) {
+    const int size = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    return {bytes.data(), size > 0 ? static_cast<size_t>(size) : 0};
+  }
+};
+
+Encoder::Encoder(const Arm& arm) : messages_(std::make_unique<Messages>()) {
+  for (const LinkShape& shape : arm.shapes) messages_->shape_links.push_back(shape.link.substr(0, kLongestText));
+  messages_->command.num_joints = arm.joints;
+  messages_->command.joint_position.resize(static_cast<size_t>(arm.joints));
+  messages_->command.joint_velocity.resize(static_cast<size_t>(arm.joints));
+  messages_->status.nearest_link.reserve(kLongestText);
+  messages_->status.message.reserve(2 * kLongestText);
+}
+
+Encoder::~Encoder() = default;
+
+Packet Encoder::encode(const Command& command, int64_t utime, int64_t seq) {
+  joint_command_t& message = messages_->command;
+  message.utime = utime;
+  message.seq = seq;
+  for (int i = 0; i < message.num_joints; ++i) {
+    message.joint_position[static_cast<size_t>(i)] = command.position_rad[i];
+    message.joint_velocity[static_cast<size_t>(i)] = command.velocity_radps[i];
+  }
+  return messages_->packet(message);
+}
+
+Packet Encoder::encode(const Report& report, const CycleRecord& record) {
+  controller_status_t& message = messages_->status;
+  message.utime = record.utime;
+  message.seq = record.seq;
+  message.mode = static_cast<int8_t>(report.mode);
+  message.fault = static_cast<int32_t>(report.fault);
+  message.limiting = report.limiting;
+  copy(report.tool_position_m, message.tool_position);
+  copy(report.tool_velocity_mps, message.tool_velocity);
+  message.target_distance = report.target_distance_m;
+  message.clearance = report.clearance_m;
+  message.nearest_obstacle = report.nearest_obstacle;
+  if (report.nearest_shape >= 0)
+    message.nearest_link = messages_->shape_links[static_cast<size_t>(report.nearest_shape)];
+  else
+    message.nearest_link.clear();
+  message.beta = report.beta;
+  message.damping = report.damping;
+  message.shield_correction = report.shield_correction_radps;
+  message.cycle_time = record.cycle_time_s;
+  message.wake_latency = record.wake_latency_s;
+  message.skipped_cycles = record.skipped_cycles;
+  message.rejected_messages = record.rejected_messages;
+  message.message = report.message;
+  message.foresight = static_cast<int8_t>(report.outlook);
+  message.guide_horizon = report.guide_horizon_s;
+  if (*record.rejected_reason) message.message.append("; rejected: ").append(record.rejected_reason);
+  return messages_->packet(message);
+}
+
+Packet Encoder::encode(const Timing& timing, int64_t utime) {
+  loop_timing_t& message = messages_->timing;
+  message.utime = utime;
+  message.period = timing.period_s;
+  message.realtime = timing.realtime;
+  message.cycles = timing.cycles;
+  message.skipped_cycles = timing.skipped_cycles;
+  message.wake_latency = summary(timing.wake_latency);
+  message.cycle = summary(timing.cycle);
+  message.observe = summary(timing.stages[0]);
+  message.clearance = summary(timing.stages[1]);
+  message.law = summary(timing.stages[2]);
+  message.shield = summary(timing.stages[3]);
+  message.gate = summary(timing.stages[4]);
+  return messages_->packet(message);
+}
+
+}  // namespace sidestep

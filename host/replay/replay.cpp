@@ -1,0 +1,160 @@
+#include "host/replay/replay.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <lcm/lcm-cpp.hpp>
+#include <optional>
+#include <sidestep/blackbox_t.hpp>
+#include <stdexcept>
+
+#include "firmware/io/admission.h"
+#include "firmware/io/blackbox_log.h"
+#include "firmware/io/mail.h"
+
+namespace sidestep {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+Bytes bytes_of(const lcm::LogEvent& event) {
+  const auto* first = static_cast<const uint8_t*>(event.data);
+  return Bytes(first, first + event.datalen);
+}
+
+/// The latest message on a channel, if there was any.
+template <typename Message>
+struct Held {
+  Message message;
+  bool any = false;
+};
+
+/// The cycles of a log, run again one by one.
+class Rerun {
+ public:
+  explicit Rerun(const Config& config)
+      : config_(config), encoder_(config.model.arm), obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
+
+  /// Returns what is wrong with the event, or "".
+  std::string take(const lcm::LogEvent& event) {
+    const Channels& channels = config_.channels;
+    if (event.channel == channels.arm_state) return hold(event, arm_);
+    if (event.channel == channels.target) return hold(event, target_);
+    if (event.channel == channels.obstacles) return hold(event, *obstacles_);
+    if (event.channel == kMomentChannel) return cycle(event);
+    if (event.channel == channels.arm_command) compare(bytes_of(event));
+    return "";
+  }
+
+  Comparison finish() {
+    if (expected_) count_difference();
+    return found_;
+  }
+
+ private:
+  /// The log holds what was admitted, so nothing but the bytes themselves is checked again.
+  template <typename Message>
+  std::string hold(const lcm::LogEvent& event, Held<Message>& held) {
+    Admission admission(config_.model.arm.joints, config_.model.settings.ages);
+    held.any = admission.admit(event.data, static_cast<size_t>(event.datalen), 0.0, held.message);
+    return held.any ? "" : admission.last_reason();
+  }
+
+  std::string cycle(const lcm::LogEvent& event) {
+    if (expected_) count_difference();
+    Moment moment;
+    if (!from_image(event.data, static_cast<size_t>(event.datalen), moment)) return "a cycle with a wrong checksum";
+    Inputs& inputs = moment.inputs;
+    if (!put(arm_, inputs.arm) || !put(target_, inputs.target) || !put(*obstacles_, inputs.obstacles))
+      return "a cycle whose messages are missing";
+    if (inputs.guide) inputs.guide = &moment.guide;
+    if (found_.cycles++ == 0) state_ = moment.state;
+    const Result result = step(config_.model, state_, inputs, moment.now_s);
+    state_ = result.next;
+    seq_ = moment.seq;
+    // Whether a command was published follows from the log: a lockstep loop answers outside a stream, too.
+    answer_.clear();
+    if (result.command.position_rad.size() == 0) return "";
+    const Packet packet = encoder_.encode(result.command, moment.utime, moment.seq);
+    answer_ = Bytes(packet.bytes, packet.bytes + packet.size);
+    if (result.commanding) expected_ = answer_;
+    return "";
+  }
+
+  template <typename Message>
+  static bool put(const Held<Message>& held, Latest<Message>& latest) {
+    if (!latest.message) return true;
+    latest.message = &held.message;
+    return held.any;
+  }
+
+  void compare(const Bytes& command) {
+    ++found_.commands;
+    if (command != answer_) count_difference();
+    expected_.reset();
+  }
+
+  void count_difference() {
+    if (found_.different++ == 0) found_.first_different_seq = seq_;
+  }
+
+  const Config& config_;
+  Encoder encoder_;
+  Held<ArmState> arm_;
+  Held<Target> target_;
+  std::unique_ptr<Held<ObstacleSet>> obstacles_;
+  State state_;
+  int64_t seq_ = 0;
+  Bytes answer_;                   ///< the command of the cycle last run
+  std::optional<Bytes> expected_;  ///< the same, while the log has yet to show it
+  Comparison found_;
+};
+
+}  // namespace
+
+struct BlackboxLog::Content {
+  std::string file;
+  lcm::LogFile log;
+  blackbox_t header;
+
+  explicit Content(const std::string& the_file) : file(the_file), log(the_file, "r") {}
+  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(file + ": " + what); }
+};
+
+BlackboxLog::BlackboxLog(const std::string& file) : content_(std::make_unique<Content>(file)) {
+  if (!content_->log.good()) content_->fail(std::strerror(errno));
+  const lcm::LogEvent* event = content_->log.readNextEvent();
+  if (!event || event->channel != kBlackboxChannel || content_->header.decode(event->data, 0, event->datalen) < 0)
+    content_->fail("is not the log of a blackbox");
+  if (content_->header.image_bytes != sizeof(MomentImage))
+    content_->fail("was written by another build of the controller");
+}
+
+BlackboxLog::~BlackboxLog() = default;
+
+std::string BlackboxLog::config_file() const {
+  return content_->header.config;
+}
+
+Overrides BlackboxLog::overrides() const {
+  const blackbox_t& header = content_->header;
+  return {header.law, header.urdf, header.base, header.tip, header.rate_hz};
+}
+
+std::string BlackboxLog::reason() const {
+  return content_->header.reason;
+}
+
+Comparison BlackboxLog::replay(const Config& config) {
+  Rerun rerun(config);
+  while (const lcm::LogEvent* event = content_->log.readNextEvent()) {
+    const std::string wrong = rerun.take(*event);
+    if (!wrong.empty()) content_->fail(fmt::format("damaged: event {}: {}", event->eventnum, wrong));
+  }
+  const Comparison found = rerun.finish();
+  if (found.cycles != content_->header.cycles)
+    content_->fail(fmt::format("damaged: holds {} of {} cycles", found.cycles, content_->header.cycles));
+  return found;
+}
+
+}  // namespace sidestep

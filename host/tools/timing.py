@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Run the real-time loop beside cyclictest, first as the machine is, then with a busy loop on every CPU.
+
+Both have the same period and FIFO priority and run side by side, on a bus of their own. Goal: the loop's p99 at most
+1.5 times cyclictest's in the same run, and no cycle left out.
+"""
+import argparse
+import time
+
+import yaml
+
+import latency
+import runs
+
+GOAL = 1.5
+FOLDER = runs.RECORDS / "timing"
+
+
+def scenario_of(duration_s):
+    """Simulation B of the paper, for as long as wanted."""
+    scenario = runs.load_scenario(runs.ROOT / "host/scenarios/paper-b.yaml")
+    scenario.update(duration_s=duration_s, robot={**scenario["robot"], "urdf": str(runs.ROOT / "urdf/lwa3.urdf")})
+    file = FOLDER / "scenario.yaml"
+    file.write_text(yaml.safe_dump(scenario))
+    return file
+
+
+def measure(name, duration_s, rate_hz, stressed):
+    """(Loop, Latency of cyclictest or None) of one run."""
+    logs = {part: FOLDER / f"{name}-{part}.log" for part in ("controller", "sim", "cyclictest")}
+    files = {part: open(log, "w") for part, log in logs.items()}
+    url, scenario, processes = runs.private_url(), scenario_of(duration_s + 5), []
+    try:
+        processes += latency.busy_loops() if stressed else []
+        controller = runs.start([runs.BUILD / "controller", "--config", runs.config_of(runs.load(scenario)),
+                                 "--rate", rate_hz, "--lcm-url", url], files["controller"])
+        processes.append(controller)
+        processes.append(runs.start([runs.BUILD / "sim", "--scenario", scenario, "--quiet", "--lcm-url", url],
+                                    files["sim"]))
+        cyclictest = latency.start_cyclictest(round(1e6 / rate_hz), duration_s, 1, files["cyclictest"])
+        processes += [cyclictest] if cyclictest else []
+        time.sleep(duration_s)
+        if controller.poll() is not None:
+            raise runs.RunFailed(f"build/controller {runs.ending(controller.returncode)}")
+        if cyclictest:
+            cyclictest.wait(10)
+    finally:
+        for process in processes:
+            runs.stop(process)
+        for file in files.values():
+            file.close()
+    return latency.loop_of(logs["controller"]), latency.cyclictest_of(logs["cyclictest"]) if cyclictest else None
+
+
+def line(name, who, latencies, skipped=""):
+    return (f"{name:16} {who:10} {latencies.p50_us:9.0f} {latencies.p99_us:9.0f} {latencies.p999_us:9.0f} "
+            f"{latencies.worst_us:9.0f}  {skipped}")
+
+
+def show(name, loop, cyclictest):
+    print(line(name, "loop", loop.wake_up, f"{loop.skipped} of {loop.cycles + loop.skipped} cycles left out"))
+    if not cyclictest:
+        return
+    ratio = loop.wake_up.p99_us / cyclictest.p99_us
+    met = ratio <= GOAL and loop.skipped == 0
+    print(line("", "cyclictest", cyclictest, f"p99: {ratio:.2f} times cyclictest's; goal {'met' if met else 'missed'}"),
+          flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--duration", type=int, default=30, metavar="S", help="of each run (default %(default)s)")
+    parser.add_argument("--rate", type=float, default=100, metavar="HZ", help="default %(default)s")
+    arguments = parser.parse_args()
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    print(f"{'wake-up, us':16} {'':10} {'p50':>9} {'p99':>9} {'p99.9':>9} {'worst':>9}", flush=True)
+    for name, stressed in (("as it is", False), ("CPUs all busy", True)):
+        loop, cyclictest = measure("stressed" if stressed else "plain", arguments.duration, arguments.rate, stressed)
+        show(name, loop, cyclictest)
+    print("FIFO and locked memory: " + ("permitted" if loop.fifo else "NOT permitted to the loop") +
+          ("" if cyclictest else "; FIFO NOT permitted to cyclictest, so there is nothing to compare with"))
+    return 0
+
+
+if __name__ == "__main__":
+    runs.main_of(main)

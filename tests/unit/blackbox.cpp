@@ -1,0 +1,200 @@
+#include "firmware/io/blackbox.h"
+
+#include <filesystem>
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+
+#include "firmware/io/admission.h"
+#include "tests/support/allocation_count.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/messages.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep;
+using test::encoded;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Message>
+void receive(Admission& admission, const test::Bytes& bytes, double now_s, Mail<Message>& mail) {
+  assert_true(admission.admit(bytes.data(), bytes.size(), now_s, mail.message));
+  mail.bytes = bytes;
+  mail.received_s = now_s;
+  ++mail.count;
+}
+
+/// A blackbox, and cycles among some obstacles for it to keep.
+struct Flight {
+  Config config = load_config("firmware/config/lwa3.yaml", {});
+  std::atomic<bool> requested{false};
+  std::unique_ptr<Blackbox> blackbox;
+  Admission admission{7, config.model.settings.ages};
+  Mail<ArmState> arm;
+  Mail<Target> target;
+  std::unique_ptr<Mail<ObstacleSet>> obstacles = std::make_unique<Mail<ObstacleSet>>();
+  State state;
+  int64_t cycles = 0;
+
+  explicit Flight(double seconds) {
+    fs::remove_all(test::scratch_folder() + "/logs");
+    config.blackbox = {seconds, test::scratch_folder() + "/logs"};
+    blackbox = std::make_unique<Blackbox>(config, requested);
+  }
+
+  void receive_obstacles(int count) {
+    std::vector<obstacle_t> spheres;
+    for (int i = 0; i < count; ++i)
+      spheres.push_back(test::sphere(i, Vector3(1.0, 0.01 * i, 0.5), 0.05, Vector3::Zero()));
+    receive(admission, encoded(test::obstacles_message(cycles + 1, spheres)), 0.01 * cycles, *obstacles);
+  }
+
+  void receive_target() {
+    const target_t message = test::target_message(cycles + 1, Vector3(0.1, 0.45, 0.7), Vector3::Zero());
+    receive(admission, encoded(message), 0.01 * static_cast<double>(cycles), target);
+  }
+
+  void cycle() {
+    KeptCycle kept;
+    kept.moment.seq = ++cycles;
+    const double now_s = kept.moment.now_s = 0.01 * static_cast<double>(cycles);
+    const JointVector rest = JointVector::Zero(7);
+    receive(admission, encoded(test::arm_state_message(10000 * cycles, test::home_rad(), rest)), now_s, arm);
+    kept.moment.inputs = {arm.latest(), target.latest(), obstacles->latest(), 0, false};
+    kept.moment.state = state;
+    const Result result = step(config.model, state, kept.moment.inputs, now_s);
+    state = result.next;
+    kept.commanded = result.commanding;
+    kept.command = result.command;
+    kept.report = result.report;
+    const int64_t before = test::allocation_count();
+    blackbox->keep({arm, target, *obstacles}, kept);
+    assert_int_equal(test::allocation_count() - before, 0);
+  }
+
+  /// Ends the flight; the only log it has left.
+  std::string log() {
+    requested = true;
+    blackbox.reset();
+    std::vector<std::string> files;
+    for (const auto& entry : fs::directory_iterator(config.blackbox.folder)) files.push_back(entry.path().string());
+    assert_int_equal(files.size(), 1);
+    return files[0];
+  }
+};
+
+/// Events of a log by channel, in the order of their first.
+struct Events {
+  std::map<std::string, int> count;
+  std::vector<std::string> order;
+
+  explicit Events(const std::string& file) {
+    lcm::LogFile log(file, "r");
+    assert_true(log.good());
+    while (const lcm::LogEvent* event = log.readNextEvent())
+      if (count[event->channel]++ == 0) order.push_back(event->channel);
+  }
+};
+
+void a_log_holds_every_message_and_cycle_of_its_seconds_in_order(void**) {
+  Flight flight(1.0);
+  for (int i = 0; i < 250; ++i) {
+    if (i % 2 == 0) flight.receive_obstacles(3);
+    if (i % 5 == 0) flight.receive_target();
+    flight.cycle();
+  }
+  Events events(flight.log());
+  assert_true((events.order == std::vector<std::string>{"BLACKBOX", "ARM_STATE", "TARGET", "OBSTACLES",
+                                                        "BLACKBOX_CYCLE", "ARM_COMMAND", "CONTROLLER_STATUS"}));
+  check(events.count["BLACKBOX_CYCLE"] >= 100 && events.count["BLACKBOX_CYCLE"] <= 101, "%d cycles",
+        events.count["BLACKBOX_CYCLE"]);
+  for (const char* each : {"ARM_STATE", "ARM_COMMAND", "CONTROLLER_STATUS"})
+    assert_int_equal(events.count[each], events.count["BLACKBOX_CYCLE"]);
+  check(events.count["OBSTACLES"] >= 50 && events.count["OBSTACLES"] <= 52, "%d", events.count["OBSTACLES"]);
+  check(events.count["TARGET"] >= 20 && events.count["TARGET"] <= 22, "%d", events.count["TARGET"]);
+}
+
+void what_was_sent_only_once_is_in_every_log_while_it_is_in_use(void**) {
+  Flight flight(1.0);
+  flight.receive_obstacles(100);
+  flight.receive_target();
+  for (int i = 0; i < 30000; ++i) flight.cycle();
+  Events events(flight.log());
+  assert_true(events.count["TARGET"] >= 1 && events.count["OBSTACLES"] >= 1);
+  assert_true(events.count["BLACKBOX_CYCLE"] >= 100);
+}
+
+/// The log reaches back less far instead.
+void the_largest_messages_find_room_within_bounds(void**) {
+  Flight flight(1.0);
+  for (int i = 0; i < 100; ++i) {
+    flight.receive_obstacles(kMaxObstacles);
+    flight.cycle();
+  }
+  const std::string log = flight.log();
+  Events events(log);
+  check(events.count["BLACKBOX_CYCLE"] >= 3, "%d cycles", events.count["BLACKBOX_CYCLE"]);
+  assert_int_equal(events.count["OBSTACLES"], events.count["BLACKBOX_CYCLE"]);
+  check(fs::file_size(log) < 16u << 20, "%zu bytes", static_cast<size_t>(fs::file_size(log)));
+}
+
+void old_logs_give_way_and_other_files_stay(void**) {
+  Flight flight(1.0);
+  flight.cycle();
+  fs::create_directories(flight.config.blackbox.folder);
+  for (int i = 0; i < 30; ++i)
+    test::scratch_file("logs/blackbox-2020" + std::to_string(1000 + i) + "-fault.lcmlog", "old");
+  test::scratch_file("logs/notes.txt", "mine");
+  flight.requested = true;
+  flight.blackbox.reset();
+  size_t logs = 0;
+  for (const auto& entry : fs::directory_iterator(flight.config.blackbox.folder))
+    logs += entry.path().extension() == ".lcmlog";
+  assert_int_equal(logs, 20);
+  assert_true(fs::exists(flight.config.blackbox.folder + "/notes.txt"));
+  assert_false(fs::exists(flight.config.blackbox.folder + "/blackbox-20201010-fault.lcmlog"));
+  assert_true(fs::exists(flight.config.blackbox.folder + "/blackbox-20201011-fault.lcmlog"));
+}
+
+void a_full_disk_is_one_clear_line(void**) {
+  const RecordRing ring(1000);
+  RecordRing::Copy nothing(ring);
+  const Config config = load_config("firmware/config/lwa3.yaml", {});
+  for (const char* file : {"/dev/full", "/no/such/folder/log"}) {
+    const std::string said = test::message_of([&] { write_blackbox_log(file, config, "test", nothing); });
+    check(test::one_line_with(said, {file}), "%s: '%s'", file, said.c_str());
+  }
+}
+
+void a_moment_comes_back_from_its_image_and_a_damaged_image_does_not(void**) {
+  Moment moment, back;
+  moment.seq = 5;
+  moment.state.position_rad = test::home_rad();
+  MomentImage image;
+  to_image(moment, image);
+  assert_true(from_image(&image, sizeof image, back));
+  assert_int_equal(back.seq, 5);
+  check_near(back.state.position_rad, test::home_rad(), 0.0);
+  assert_false(from_image(&image, sizeof image - 1, back));
+  for (size_t at = 0; at < sizeof image; ++at) {
+    reinterpret_cast<uint8_t*>(&image)[at] ^= 0x10;
+    check(!from_image(&image, sizeof image, back), "byte %zu", at);
+    reinterpret_cast<uint8_t*>(&image)[at] ^= 0x10;
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_log_holds_every_message_and_cycle_of_its_seconds_in_order),
+      cmocka_unit_test(what_was_sent_only_once_is_in_every_log_while_it_is_in_use),
+      cmocka_unit_test(the_largest_messages_find_room_within_bounds),
+      cmocka_unit_test(old_logs_give_way_and_other_files_stay),
+      cmocka_unit_test(a_full_disk_is_one_clear_line),
+      cmocka_unit_test(a_moment_comes_back_from_its_image_and_a_damaged_image_does_not),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
