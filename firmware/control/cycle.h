@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ struct Inputs {
   Latest<ObstacleSet> obstacles;
   int skipped_cycles = 0;  ///< since the cycle before
   bool stop = false;
+  double foreign_command_s = -HUGE_VAL;  ///< when somebody else's command for this arm was heard last
 };
 
 /// What one cycle hands to the next.

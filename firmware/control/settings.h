@@ -67,6 +67,7 @@ struct Ages {
   double arm_state_s = 0.030;       ///< brake
   double arm_state_lost_s = 0.100;  ///< fault
   double consistent_s = 0.5;        ///< of arm state before anything moves
+  double old_place_s = 0.3;         ///< of an obstacle that has jumped: so long it counts
 };
 
 /// Everything a control cycle is told before it starts. Read from YAML by io/config.

@@ -13,8 +13,9 @@ namespace fs = std::filesystem;
 
 /// The first existing `relative` in `start` or a folder above it; empty when there is none.
 fs::path find_upwards(fs::path start, const fs::path& relative) {
+  std::error_code ignored;  // what the system cannot look up, as a name that is too long, is not there
   for (start = fs::absolute(start);; start = start.parent_path()) {
-    if (fs::exists(start / relative)) return start / relative;
+    if (fs::exists(start / relative, ignored)) return start / relative;
     if (start == start.root_path()) return {};
   }
 }
@@ -103,6 +104,7 @@ void read_ages(Section section, Ages& ages) {
   section.positive("arm_state_s", ages.arm_state_s);
   section.positive("arm_state_lost_s", ages.arm_state_lost_s);
   section.not_negative("consistent_s", ages.consistent_s);
+  section.not_negative("old_place_s", ages.old_place_s);
   if (ages.arm_state_lost_s < ages.arm_state_s) section.fail("arm_state_lost_s", "must not be below arm_state_s");
   section.finish();
 }

@@ -15,8 +15,8 @@ void CycleRunner::run(const Post& post, const Occasion& occasion) {
   moment.utime = occasion.utime;
   moment.seq = ++timing_.cycles;
   moment.now_s = occasion.now_s;
-  moment.inputs = {post.arm.latest(), post.target.latest(), post.obstacles.latest(), occasion.skipped_cycles,
-                   occasion.stop};
+  moment.inputs = {post.arm.latest(),       post.target.latest(), post.obstacles.latest(),
+                   occasion.skipped_cycles, occasion.stop,        occasion.foreign_command_s};
   moment.state = state_;
   const Result result = step(model_, state_, moment.inputs, moment.now_s, &clock_);
   state_ = result.next;
