@@ -29,6 +29,9 @@ CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
+# What the fuzzers look at.
+FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
+              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/config io/config_section))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
@@ -139,7 +142,7 @@ $(BUILD)/fuzz/obj/%.o: %.cpp $(WIRE)
 	@echo "clang++ $<"
 	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer-no-link,address,undefined $(INCLUDES) -MMD -MP -c $< -o $@
 
-$(FUZZERS): $(BUILD)/fuzz/%: $(BUILD)/fuzz/obj/tests/fuzz/%.o $(FIRMWARE:$(BUILD)/%=$(BUILD)/fuzz/%)
+$(FUZZERS): $(BUILD)/fuzz/%: $(BUILD)/fuzz/obj/tests/fuzz/%.o $(FUZZED:$(BUILD)/%=$(BUILD)/fuzz/%)
 	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer,address,undefined $^ $(LIBS) -o $@
 
 .SECONDARY:

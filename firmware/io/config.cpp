@@ -123,6 +123,9 @@ void read_control(Section control, double rate_over_it_hz, Settings& settings) {
 void read_obstacles(Section obstacles, Settings& settings) {
   obstacles.flag("wait_for_first", settings.wait_for_obstacles);
   obstacles.not_negative("speed_bound_mps", settings.obstacle_speed_bound_mps);
+  obstacles.number("latency_s", settings.obstacle_trust.latency_s, 0.0, 1.0);
+  obstacles.not_negative("uncertainty_m", settings.obstacle_trust.uncertainty_m);
+  obstacles.not_negative("acceleration_bound_mps2", settings.obstacle_trust.acceleration_bound_mps2);
   obstacles.finish();
 }
 
