@@ -187,7 +187,6 @@ Config load_config(const std::string& file, const Overrides& overrides) {
 
   config.model.arm = read_robot(root.section("robot"), file, overrides);
   read_limits(root.section("limits"), config.model.arm);
-  config.model.self_pairs = find_self_pairs(config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
@@ -198,6 +197,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_shield(root.section("shield"), settings.shield);
   read_switch(root.section("foresight"), settings.foresight_enabled);
   root.finish();
+  config.model.self_pairs = find_self_pairs(config.model.arm);  // takes a while
   return config;
 }
 
