@@ -13,6 +13,8 @@ PYTHON   := $(BUILD)/venv/bin/python
 SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
 # Eigen at -O2 makes gcc see uninitialised values where there are none.
 CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
+# make sanitize: which sanitizers to build with. The typed subscriptions of LCM's C++ binding are what they must not see.
+CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
 LIBS     := -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
 
@@ -21,12 +23,18 @@ objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware/*/*.cpp))
 SIM      := $(call objects,$(call sources,host/sim/*.cpp))
+RELAY    := $(call objects,$(call sources,host/relay/*.cpp))
 REPLAY   := $(call objects,$(wildcard host/replay/*.cpp))
 CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay
-LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
+FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
+# What the fuzzers look at.
+FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
+              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/config io/config_section))
+FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay
+LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
 
@@ -37,6 +45,18 @@ run: all ## play SCENARIO (default paper-c) in real time, then the table and the
 
 test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed, N failed
 	@$(PYTHON) tests/run.py $(TESTS)
+
+##@ Hardening
+
+faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
+	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
+
+fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
+	@$(MAKE) $(FUZZERS)
+	@tests/fuzz/run $(or $(SECONDS),60)
+
+sanitize: all $(READY).test ## all tests under ASan and UBSan, those with threads under TSan
+	@tests/sanitize
 
 ##@ Building
 
@@ -64,7 +84,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures timing soak lint clean help
+.PHONY: all run test faults fuzz sanitize campaign figures timing soak lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -92,6 +112,7 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)
 $(BUILD)/libfirmware.a: $(FIRMWARE)
 $(BUILD)/libsim.a: $(SIM)
 $(BUILD)/libcampaign.a: $(CAMPAIGN)
+$(BUILD)/librelay.a: $(RELAY)
 $(BUILD)/libsupport.a: $(SUPPORT)
 $(BUILD)/lib%.a:
 	@rm -f $@ && ar rcs $@ $^
@@ -108,9 +129,21 @@ $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BU
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
+$(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)
 	@$(CXX) $(CXXFLAGS) $(filter %.o %.a,$^) -lfcl -lccd -lcmocka $(LIBS) -o $@
 
+FUZZFLAGS = $(filter-out -Werror -Wno-maybe-uninitialized,$(CXXFLAGS)) -fno-sanitize-recover=all
+$(BUILD)/fuzz/obj/%.o: %.cpp $(WIRE)
+	@mkdir -p $(@D)
+	@echo "clang++ $<"
+	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer-no-link,address,undefined $(INCLUDES) -MMD -MP -c $< -o $@
+
+$(FUZZERS): $(BUILD)/fuzz/%: $(BUILD)/fuzz/obj/tests/fuzz/%.o $(FUZZED:$(BUILD)/%=$(BUILD)/fuzz/%)
+	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer,address,undefined $^ $(LIBS) -o $@
+
 .SECONDARY:
--include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD)/obj $(BUILD)/fuzz -name '*.d' 2>/dev/null)

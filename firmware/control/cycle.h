@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -26,7 +27,8 @@ struct Inputs {
   Latest<ObstacleSet> obstacles;
   int skipped_cycles = 0;  ///< since the cycle before
   bool stop = false;
-  const Guide* guide = nullptr;  ///< from foresight; null: none
+  double foreign_command_s = -HUGE_VAL;  ///< when somebody else's command for this arm was heard last
+  const Guide* guide = nullptr;          ///< from foresight; null: none
 };
 
 /// What one cycle hands to the next.

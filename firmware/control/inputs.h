@@ -28,10 +28,15 @@ class Order {
   /// older by more than `restart_s`, or nothing was accepted for `restart_s` (local receipt times, s).
   bool accept(int64_t utime, double now_s, double restart_s);
 
+  /// From the message accepted before the last to the last, s, by their receipt or by their sender's clock, whichever
+  /// says more; 0 for the first.
+  double elapsed_s() const { return elapsed_s_; }
+
  private:
   bool any_ = false;
   int64_t utime_ = 0;
   double accepted_s_ = 0.0;
+  double elapsed_s_ = 0.0;
 };
 
 }  // namespace sidestep

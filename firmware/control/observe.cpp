@@ -54,6 +54,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   next.skipped_in_a_row = inputs.skipped_cycles > 0 ? next.skipped_in_a_row + inputs.skipped_cycles : 0;
   facts.late = next.skipped_in_a_row >= kMostSkippedCycles;
   facts.stop = inputs.stop;
+  facts.rival = now_s - inputs.foreign_command_s <= ages.consistent_s;
   return facts;
 }
 

@@ -5,7 +5,8 @@
 
 namespace sidestep {
 
-/// The obstacles as they are now: the last set and its age; past its time it grows by what may have happened since.
+/// The obstacles as they are now: the last set and its age. They grow by what is not known: where they were, how they
+/// have moved since, and past the time of the set by as far as they may have come.
 ObstacleView view_obstacles(const Settings& settings, const Latest<ObstacleSet>& obstacles, double now_s);
 
 /// The target dt_s later at its own velocities.

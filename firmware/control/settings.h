@@ -77,6 +77,14 @@ struct Ages {
   double arm_state_s = 0.030;       ///< brake
   double arm_state_lost_s = 0.100;  ///< fault
   double consistent_s = 0.5;        ///< of arm state before anything moves
+  double old_place_s = 0.3;         ///< of an obstacle that has jumped: so long it counts
+};
+
+/// How far reports of obstacles can be trusted; each adds to the distance that is kept, as in ISO/TS 15066.
+struct ObstacleTrust {
+  double latency_s = 0.0;                ///< from the measurement to the receipt: moved forward by it
+  double uncertainty_m = 0.0;            ///< of a reported position
+  double acceleration_bound_mps2 = 0.0;  ///< by which an obstacle may leave its constant velocity since then
 };
 
 /// Everything a control cycle is told before it starts. Read from YAML by io/config.
@@ -88,7 +96,8 @@ struct Settings {
   SidestepGains sidestep;
   ShieldSettings shield;
   ForesightSettings foresight;
-  bool wait_for_obstacles = true;         ///< false: no obstacle set ever received counts as no obstacles
+  bool wait_for_obstacles = true;  ///< false: no obstacle set ever received counts as no obstacles
+  ObstacleTrust obstacle_trust;
   double obstacle_speed_bound_mps = 2.0;  ///< how fast an obstacle that is no longer reported may move
   double following_error_rad = 0.5;       ///< how far the command may lead the measured arm, per joint
 

@@ -8,6 +8,7 @@ Supervision start(const Facts& facts, Mode mode, Fault fault) {
   if (!facts.arm_fresh) return {mode, fault, "waiting for arm states; the last one is too old"};
   if (!facts.arm_consistent) return {mode, fault, "waiting for consistent arm states"};
   if (facts.stop) return {mode, fault, "stopping"};
+  if (facts.rival) return {mode, fault, "waiting: another controller commands the arm"};
   if (!facts.obstacles_known) return {Mode::kWait, Fault::kNone, "waiting for the first obstacle set"};
   return {Mode::kHold, Fault::kNone, "holding"};
 }
@@ -21,6 +22,7 @@ Supervision next_mode(const Supervision& last, const Facts& facts) {
   if (last.mode == Mode::kFault) return start(facts, Mode::kFault, last.fault);
 
   if (facts.stop) return {Mode::kBrake, Fault::kNone, "braking: asked to stop"};
+  if (facts.rival) return {Mode::kBrake, Fault::kNone, "braking: another controller commands the arm"};
   if (!facts.arm_fresh) return {Mode::kBrake, Fault::kNone, "braking: the arm state is too old"};
   if (!facts.obstacles_fresh) return {Mode::kBrake, Fault::kNone, "braking: the obstacles are too old"};
   if (facts.late) return {Mode::kBrake, Fault::kNone, "braking: too many cycles in a row were skipped"};

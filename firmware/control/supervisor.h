@@ -15,8 +15,9 @@ struct Facts {
   bool obstacles_fresh = false;
   bool target_known = false;
   bool target_fresh = false;
-  bool late = false;  ///< too many cycles in a row were skipped
-  bool stop = false;  ///< somebody wants the controller to end
+  bool late = false;   ///< too many cycles in a row were skipped
+  bool stop = false;   ///< somebody wants the controller to end
+  bool rival = false;  ///< another controller has just sent commands to the same arm
 };
 
 /// Mode, what led to it, and both in words.
@@ -30,8 +31,8 @@ struct Supervision {
 ///
 ///   WAIT  -> HOLD   the arm state is consistent and the obstacles are known
 ///   HOLD <-> TRACK  there is a fresh target; HOLD slows to rest and goes on avoiding
-///   any   -> BRAKE  arm state or obstacles too old, late, or asked to stop: to rest as fast as the joints can; and
-///   back any   -> FAULT  arm state lost or contradictory, or a wish that is not finite; from there as from WAIT
+///   any  <-> BRAKE  arm state or obstacles too old, late, a rival, or asked to stop: to rest as fast as the joints can
+///   any   -> FAULT  arm state lost or contradictory, or a wish that is not finite; from there as from WAIT
 Supervision next_mode(const Supervision& last, const Facts& facts);
 
 }  // namespace sidestep

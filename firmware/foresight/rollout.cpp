@@ -43,6 +43,7 @@ bool is_at(const Posture& posture, const Target& target) {
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
+  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles have grown already
 }
 
 Forecast Rollout::run(const Snapshot& from, const Guide& guide) {

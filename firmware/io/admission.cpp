@@ -5,6 +5,8 @@
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 
+#include "firmware/control/jumps.h"
+
 namespace sidestep {
 namespace {
 
@@ -61,10 +63,14 @@ struct Admission::Scratch {
   joint_state_t arm;
   target_t target;
   obstacles_t obstacles;
+  Jumps jumps;
 };
 
-Admission::Admission(int joints, const Ages& ages, bool arm_is_clock)
-    : joints_(joints), ages_(ages), arm_is_clock_(arm_is_clock), scratch_(std::make_unique<Scratch>()) {
+Admission::Admission(int joints, const Settings& settings, bool arm_is_clock)
+    : joints_(joints),
+      ages_(settings.ages),
+      arm_is_clock_(arm_is_clock),
+      scratch_(new Scratch{{}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, settings.ages.old_place_s)}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 
@@ -125,7 +131,9 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
           turns ? vector(from.angular_velocity) : Vector3(Vector3::Zero())};
     if (!plausible(to)) return reject("obstacles with impossible values");
   }
-  return obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s);
+  if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) return false;
+  scratch_->jumps.complete(value, obstacles_order_.elapsed_s(), now_s);
+  return true;
 }
 
 }  // namespace sidestep

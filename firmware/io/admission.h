@@ -8,11 +8,12 @@ namespace sidestep {
 
 /// The gate for bytes from outside. A message becomes a value only if its size is exactly what its count implies, its
 /// fingerprint is right, every number is plausible and it is newer than the last; anything else is rejected whole,
-/// counted and named. Never throws; does not allocate once each kind of message has been seen at its largest.
+/// counted and named. Obstacles that jump count in their old place, too. Never throws; does not allocate once each kind
+/// of message has been seen at its largest.
 class Admission {
  public:
   /// arm_is_clock: in lockstep time is the utime of the arm states, whatever now_s says about them.
-  Admission(int joints, const Ages& ages, bool arm_is_clock = false);
+  Admission(int joints, const Settings& settings, bool arm_is_clock = false);
   ~Admission();
 
   /// Each returns whether `value` was filled; when not, its content is arbitrary. now_s: local time of receipt.

@@ -13,8 +13,9 @@ namespace fs = std::filesystem;
 
 /// The first existing `relative` in `start` or a folder above it; empty when there is none.
 fs::path find_upwards(fs::path start, const fs::path& relative) {
+  std::error_code ignored;  // what the system cannot look up, as a name that is too long, is not there
   for (start = fs::absolute(start);; start = start.parent_path()) {
-    if (fs::exists(start / relative)) return start / relative;
+    if (fs::exists(start / relative, ignored)) return start / relative;
     if (start == start.root_path()) return {};
   }
 }
@@ -105,6 +106,7 @@ void read_ages(Section section, Ages& ages) {
   section.positive("arm_state_s", ages.arm_state_s);
   section.positive("arm_state_lost_s", ages.arm_state_lost_s);
   section.not_negative("consistent_s", ages.consistent_s);
+  section.not_negative("old_place_s", ages.old_place_s);
   if (ages.arm_state_lost_s < ages.arm_state_s) section.fail("arm_state_lost_s", "must not be below arm_state_s");
   section.finish();
 }
@@ -123,6 +125,9 @@ void read_control(Section control, double rate_over_it_hz, Settings& settings) {
 void read_obstacles(Section obstacles, Settings& settings) {
   obstacles.flag("wait_for_first", settings.wait_for_obstacles);
   obstacles.not_negative("speed_bound_mps", settings.obstacle_speed_bound_mps);
+  obstacles.number("latency_s", settings.obstacle_trust.latency_s, 0.0, 1.0);
+  obstacles.not_negative("uncertainty_m", settings.obstacle_trust.uncertainty_m);
+  obstacles.not_negative("acceleration_bound_mps2", settings.obstacle_trust.acceleration_bound_mps2);
   obstacles.finish();
 }
 
@@ -186,7 +191,6 @@ Config load_config(const std::string& file, const Overrides& overrides) {
 
   config.model.arm = read_robot(root.section("robot"), file, overrides);
   read_limits(root.section("limits"), config.model.arm);
-  config.model.self_pairs = find_self_pairs(config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
@@ -197,6 +201,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_shield(root.section("shield"), settings.shield);
   read_foresight(root.section("foresight"), settings.foresight);
   root.finish();
+  config.model.self_pairs = find_self_pairs(config.model.arm);  // takes a while
   return config;
 }
 

@@ -94,7 +94,10 @@ void Section::text(const std::string& key, std::string& value) {
   const YAML::Node node = take(key);
   if (node.IsNull()) return;
   if (!node.IsScalar() || node.Scalar().empty()) fail(key, "must be a text");
-  value = node.Scalar();
+  const std::string& text = node.Scalar();
+  if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }))
+    fail(key, "must not hold control characters");
+  value = text;
 }
 
 void Section::choice(const std::string& key, std::string& value, const std::vector<std::string>& choices) {

@@ -21,8 +21,8 @@ void CycleRunner::run(const Post& post, const Occasion& occasion) {
   moment.utime = occasion.utime;
   moment.seq = ++timing_.cycles;
   moment.now_s = occasion.now_s;
-  moment.inputs = {post.arm.latest(), post.target.latest(), post.obstacles.latest(), occasion.skipped_cycles,
-                   occasion.stop};
+  moment.inputs = {post.arm.latest(),       post.target.latest(), post.obstacles.latest(),
+                   occasion.skipped_cycles, occasion.stop,        occasion.foreign_command_s};
   if (const Guide* guide = adviser_.latest()) {
     moment.guide = *guide;
     moment.inputs.guide = &moment.guide;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "firmware/io/adviser.h"
 #include "firmware/io/blackbox.h"
 #include "firmware/io/wire.h"
@@ -20,6 +22,7 @@ class CycleRunner {
     int skipped_cycles = 0;  ///< since the one before
     double wake_latency_s = 0.0;
     bool stop = false;
+    double foreign_command_s = -HUGE_VAL;  ///< as in Inputs
     int64_t rejected_messages = 0;
     const char* rejected_reason = "";
   };

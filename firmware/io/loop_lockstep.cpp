@@ -18,7 +18,7 @@ class Lockstep {
         adviser_(config.model, true),
         wire_(lcm_url, config.channels, config.model.arm),
         runner_(config, wire_, blackbox_, adviser_, true, kLimitingNothing),
-        admission_(config.model.arm.joints, config.model.settings.ages, true),
+        admission_(config.model.arm.joints, config.model.settings, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
         stop_(requests.stop) {
     wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });

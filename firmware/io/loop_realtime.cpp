@@ -21,10 +21,11 @@ constexpr double kLongestBraking_s = 5.0;
 /// The receiving side: checks what comes in and puts the newest valid message of each kind into its mailbox.
 class Receiver {
  public:
-  Receiver(Wire& wire, int joints, const Ages& ages) : wire_(wire), admission_(joints, ages, false) {
+  Receiver(Wire& wire, int joints, const Settings& settings) : wire_(wire), admission_(joints, settings) {
     wire.on_arm_state([this](const void* bytes, size_t size) { post(bytes, size, arm); });
     wire.on_target([this](const void* bytes, size_t size) { post(bytes, size, target); });
     wire.on_obstacles([this](const void* bytes, size_t size) { post(bytes, size, obstacles); });
+    wire.on_foreign_command([this] { foreign_command_s = monotonic_s(); });
   }
 
   void run(const std::atomic<bool>& end) {
@@ -34,6 +35,7 @@ class Receiver {
   Mailbox<Mail<ArmState>> arm;
   Mailbox<Mail<Target>> target;
   Mailbox<Mail<ObstacleSet>> obstacles;
+  std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
   std::atomic<const char*> rejected_reason{""};
 
@@ -92,6 +94,7 @@ class Loop {
     occasion.skipped_cycles = skipped;
     occasion.wake_latency_s = late_s;
     occasion.stop = stop;
+    occasion.foreign_command_s = receiver_.foreign_command_s;
     occasion.rejected_messages = receiver_.rejected;
     occasion.rejected_reason = receiver_.rejected_reason;
     runner_.run(post, occasion);
@@ -122,7 +125,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
 
   Wire wire(lcm_url, config.channels, config.model.arm);
-  const auto receiver = std::make_unique<Receiver>(wire, config.model.arm.joints, config.model.settings.ages);
+  const auto receiver = std::make_unique<Receiver>(wire, config.model.arm.joints, config.model.settings);
   CycleRunner runner(config, wire, blackbox, adviser, false, limiting);
   std::atomic<bool> end{false};
   std::thread receiving([&] { receiver->run(end); });

@@ -6,6 +6,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "firmware/io/own_messages.h"
+
 namespace sidestep {
 namespace {
 
@@ -16,12 +18,21 @@ void call_handler(const lcm_recv_buf_t* buffer, const char*, void* handler) {
   (*static_cast<const ByteHandler*>(handler))(buffer->data, buffer->data_size);
 }
 
+/// The utime that follows the fingerprint in every message; 0 when there is none.
+int64_t utime_of(const void* bytes, size_t size) {
+  uint64_t utime = 0;
+  if (size < 16) return 0;
+  for (int i = 8; i < 16; ++i) utime = utime << 8 | static_cast<const uint8_t*>(bytes)[i];
+  return static_cast<int64_t>(utime);
+}
+
 }  // namespace
 
 struct Wire::Network {
   lcm_t* lcm = nullptr;
   Channels channels;
-  std::array<ByteHandler, 3> handlers;
+  std::array<ByteHandler, 4> handlers;
+  OwnMessages own_commands;
   Encoder encoder;
 
   Network(const Channels& the_channels, const Arm& arm) : channels(the_channels), encoder(arm) {}
@@ -65,11 +76,19 @@ void Wire::on_obstacles(ByteHandler handler) {
   network_->subscribe(network_->channels.obstacles, network_->handlers[2], std::move(handler));
 }
 
+void Wire::on_foreign_command(std::function<void()> handler) {
+  const auto listen = [this, handler = std::move(handler)](const void* bytes, size_t size) {
+    if (!network_->own_commands.has(utime_of(bytes, size))) handler();
+  };
+  network_->subscribe(network_->channels.arm_command, network_->handlers[3], listen);
+}
+
 bool Wire::receive(int timeout_ms) {
   return lcm_handle_timeout(network_->lcm, timeout_ms) > 0;
 }
 
 void Wire::publish(const Command& command, int64_t utime, int64_t seq) {
+  network_->own_commands.sent(utime);
   network_->send(network_->channels.arm_command, network_->encoder.encode(command, utime, seq));
 }
 

@@ -23,6 +23,8 @@ class Wire {
   void on_arm_state(ByteHandler handler);
   void on_target(ByteHandler handler);
   void on_obstacles(ByteHandler handler);
+  /// Commands on our own command channel that this Wire has not sent.
+  void on_foreign_command(std::function<void()> handler);
 
   /// Handles one message, or waits for one for at most timeout_ms. Returns whether one was handled.
   bool receive(int timeout_ms);

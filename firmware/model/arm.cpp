@@ -5,6 +5,8 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <kdl/tree.hpp>
@@ -19,7 +21,11 @@ namespace {
 
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
-  throw std::runtime_error(fmt::format(format, std::forward<Args>(args)...));
+  std::string line = fmt::format(format, std::forward<Args>(args)...);
+  // Names come from the file and may hold anything.
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+  throw std::runtime_error(line);
 }
 
 Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {

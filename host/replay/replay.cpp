@@ -33,7 +33,10 @@ struct Held {
 class Rerun {
  public:
   explicit Rerun(const Config& config)
-      : config_(config), encoder_(config.model.arm), obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
+      : config_(config),
+        admission_(config.model.arm.joints, config.model.settings),
+        encoder_(config.model.arm),
+        obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
 
   /// Returns what is wrong with the event, or "".
   std::string take(const lcm::LogEvent& event) {
@@ -52,12 +55,12 @@ class Rerun {
   }
 
  private:
-  /// The log holds what was admitted, so nothing but the bytes themselves is checked again.
+  /// The log holds what was admitted, and when; so it is admitted again.
   template <typename Message>
   std::string hold(const lcm::LogEvent& event, Held<Message>& held) {
-    Admission admission(config_.model.arm.joints, config_.model.settings.ages);
-    held.any = admission.admit(event.data, static_cast<size_t>(event.datalen), 0.0, held.message);
-    return held.any ? "" : admission.last_reason();
+    const double received_s = static_cast<double>(event.timestamp) * 1e-6;
+    held.any = admission_.admit(event.data, static_cast<size_t>(event.datalen), received_s, held.message);
+    return held.any ? "" : fmt::format("not admitted: {}", admission_.last_reason());
   }
 
   std::string cycle(const lcm::LogEvent& event) {
@@ -99,6 +102,7 @@ class Rerun {
   }
 
   const Config& config_;
+  Admission admission_;
   Encoder encoder_;
   Held<ArmState> arm_;
   Held<Target> target_;

@@ -1,45 +1,21 @@
 #include <csignal>
 
 #include "tests/support/check.h"
-#include "tests/support/live_arm.h"
+#include "tests/support/live_scene.h"
 #include "tests/support/lwa3.h"
-#include "tests/support/process.h"
 
 using namespace sidestep;
 using test::Bytes;
+using test::check_stream;
 using test::LiveArm;
-using test::private_lcm_url;
+using Scene = test::LiveScene;
 using test::Process;
+using test::start_controller;
 
 namespace {
 
 using Status = controller_status_t;
 const char* const kLaws[] = {"paper", "sidestep"};
-
-Process start_controller(const std::string& law) {
-  return Process(
-      {"build/controller", "--config", "firmware/config/lwa3.yaml", "--law", law, "--lcm-url", private_lcm_url()});
-}
-
-void check_stream(const LiveArm& arm) {
-  const auto received = static_cast<int64_t>(arm.peer.commands.size());
-  check(20 * arm.lost() <= received, "%ld of %ld commands were lost: nothing is proved", arm.lost(),
-        arm.lost() + received);
-  check(arm.commands.complaint().empty(), "%s", arm.commands.complaint().c_str());
-}
-
-/// A controller in real time that is moving the arm.
-struct Scene {
-  Process controller;
-  LiveArm arm{test::lwa3().limits, test::home_rad()};
-
-  explicit Scene(const std::string& law) : controller(start_controller(law)) {
-    arm.target_m = Vector3(0.1, 0.45, 0.7);
-    check(arm.run_until(Status::TRACK, 10.0), "%s", controller.output().c_str());
-    for (int i = 0; i < 100 && arm.speed_radps() < 0.3; ++i) arm.run(0.02);
-    check(arm.speed_radps() >= 0.3, "%g rad/s: %s", arm.speed_radps(), arm.status().message.c_str());
-  }
-};
 
 /// Statuses and skipped cycles together, so that a busy machine does not count.
 void the_loop_holds_its_rate(void**) {
@@ -126,10 +102,7 @@ void a_signal_brakes_to_rest_and_ends_with_code_0(void**) {
 void every_command_of_a_live_run_can_be_followed(void**) {
   for (const char* law : kLaws) {
     Scene scene(law);
-    for (int i = 0; i < 8; ++i) {
-      scene.arm.target_m = i % 2 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
-      scene.arm.run(0.4);
-    }
+    scene.wander(3.2);
     assert_true(scene.arm.peer.commands.size() > 150);
     check_stream(scene.arm);
   }

@@ -3,16 +3,24 @@
 #include <cerrno>
 #include <cstddef>
 
+namespace {
+thread_local int64_t count = 0;
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#include <sanitizer/allocator_interface.h>
+
+namespace {
+const int kHooked = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, size_t) { ++count; },
+                                                              [](const volatile void*) {});
+}
+#else
 // The allocator of the GNU C library under its own names.
 extern "C" {
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);
 void* __libc_realloc(void* old, size_t size);
 void* __libc_memalign(size_t alignment, size_t size);
-}
-
-namespace {
-thread_local int64_t count = 0;
 }
 
 extern "C" {
@@ -42,6 +50,7 @@ int posix_memalign(void** result, size_t alignment, size_t size) {
   return *result ? 0 : ENOMEM;
 }
 }
+#endif
 
 namespace sidestep::test {
 

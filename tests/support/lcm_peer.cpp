@@ -8,18 +8,25 @@
 
 namespace sidestep::test {
 
-std::string private_lcm_url() {
-  return "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 40000) + "?ttl=0";
+std::string private_lcm_url(int number) {
+  return "udpm://239.255.76." + std::to_string(67 + number) + ":" +
+         std::to_string(20000 + 2 * (getpid() % 20000) + number) + "?ttl=0";
 }
 
 LcmPeer::LcmPeer() : lcm_(private_lcm_url()) {
+  send_to(private_lcm_url());
   check(lcm_.good(), "no LCM at %s", private_lcm_url().c_str());
   lcm_.subscribe("ARM_COMMAND", &LcmPeer::on_command, this)->setQueueCapacity(10000);
   lcm_.subscribe("CONTROLLER_STATUS", &LcmPeer::on_status, this)->setQueueCapacity(10000);
 }
 
 void LcmPeer::send_bytes(const std::string& channel, const Bytes& bytes) {
-  lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+  out_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+}
+
+void LcmPeer::send_to(const std::string& url) {
+  out_ = std::make_unique<lcm::LCM>(url);
+  check(out_->good(), "no LCM at %s", url.c_str());
 }
 
 bool LcmPeer::await(const std::function<bool()>& condition, double limit_s) {

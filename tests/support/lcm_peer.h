@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
+#include <memory>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <string>
@@ -11,8 +12,8 @@
 
 namespace sidestep::test {
 
-/// A network of this process's own: multicast that stays on this machine, on a port that follows from the process id.
-std::string private_lcm_url();
+/// Networks of this process's own: multicast that stays on this machine, on ports that follow from the process id.
+std::string private_lcm_url(int number = 0);
 
 /// The other end of the controller's wire: sends what an arm and a world would, keeps all that comes back.
 class LcmPeer {
@@ -24,6 +25,8 @@ class LcmPeer {
     send_bytes(channel, encoded(message));
   }
   void send_bytes(const std::string& channel, const Bytes& bytes);
+  /// From now on sends to another network; it goes on listening where it did.
+  void send_to(const std::string& url);
 
   /// Receives until the condition holds, for at most limit_s. Returns whether it does.
   bool await(const std::function<bool()>& condition, double limit_s);
@@ -40,6 +43,7 @@ class LcmPeer {
   void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel, const controller_status_t* message);
 
   lcm::LCM lcm_;
+  std::unique_ptr<lcm::LCM> out_;
 };
 
 }  // namespace sidestep::test

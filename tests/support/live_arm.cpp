@@ -50,7 +50,7 @@ void LiveArm::follow() {
 }
 
 void LiveArm::tick() {
-  const int64_t utime = utime_now();
+  const int64_t utime = utime_now() + clock_offset_us;
   if (target_speaks) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
   if (obstacles_speak)
     peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));

@@ -17,6 +17,7 @@ class LiveArm {
 
   bool arm_speaks = true, target_speaks = true, obstacles_speak = true;
   Vector3 target_m = Vector3::Zero();
+  int64_t clock_offset_us = 0;  ///< of all utimes
   LcmPeer peer;
   CommandCheck commands;
 

@@ -46,7 +46,7 @@ Matrix3 rotation(const double* wxyz) {
 void an_arm_state_arrives_as_it_was_sent(void**) {
   Random random(1);
   for (int joints = 6; joints <= kMaxJoints; ++joints) {
-    Admission admission(joints, Ages());
+    Admission admission(joints, Settings());
     const JointVector q_rad = random.joints(joints, -3, 3), qd_radps = random.joints(joints, -2, 2);
     ArmState state;
     assert_true(admit(admission, encoded(arm_state_message(123456789, q_rad, qd_radps)), state));
@@ -60,7 +60,7 @@ void an_arm_state_arrives_as_it_was_sent(void**) {
 
 void a_target_arrives_as_it_was_sent(void**) {
   Random random(2);
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   target_t message = target_message(5, random.inside(-1, 1), random.inside(-1, 1));
   message.tracks_orientation = 1;
   const double wxyz[] = {0.5, -0.5, 0.5, 0.5};
@@ -77,7 +77,7 @@ void a_target_arrives_as_it_was_sent(void**) {
 }
 
 void a_point_target_ignores_the_orientation_fields(void**) {
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   target_t message = target_message(5, Vector3(1, 2, 3), Vector3(0, 0, 0));
   message.quaternion[0] = std::nan("");
   message.angular_velocity[1] = std::nan("");
@@ -89,7 +89,7 @@ void a_point_target_ignores_the_orientation_fields(void**) {
 }
 
 void a_quaternion_slightly_off_is_made_unit(void**) {
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   target_t message = target_message(5, Vector3(1, 2, 3), Vector3(0, 0, 0));
   message.tracks_orientation = 1;
   message.quaternion[0] = 1.0005;
@@ -101,7 +101,7 @@ void a_quaternion_slightly_off_is_made_unit(void**) {
 void spheres_and_capsules_arrive_as_they_were_sent(void**) {
   Random random(3);
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   for (int trial = 1; trial <= 100; ++trial) {
     const obstacle_t sphere = random_obstacle(random, obstacle_t::SPHERE),
                      capsule = random_obstacle(random, obstacle_t::CAPSULE);
@@ -126,7 +126,7 @@ void spheres_and_capsules_arrive_as_they_were_sent(void**) {
 void a_box_arrives_as_a_capsule_that_holds_its_corners(void**) {
   Random random(4);
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   for (int trial = 1; trial <= 200; ++trial) {
     const obstacle_t box = random_obstacle(random, obstacle_t::BOX);
     assert_true(admit(admission, encoded(obstacles_message(trial, {box})), *set));
@@ -144,14 +144,14 @@ void a_box_arrives_as_a_capsule_that_holds_its_corners(void**) {
 void the_empty_set_is_a_message_too(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   set->count = 3;
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   assert_true(admit(admission, encoded(obstacles_message(1, {})), *set));
   assert_int_equal(set->count, 0);
 }
 
 void as_many_obstacles_as_promised_are_taken_and_no_more(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   std::vector<obstacle_t> obstacles(kMaxObstacles, test::sphere(1, Vector3(1, 2, 3), 0.1, Vector3(0, 0, 0)));
   obstacles.back().id = 77;
   assert_int_equal(kMaxObstacles, 4096);
@@ -166,7 +166,7 @@ void as_many_obstacles_as_promised_are_taken_and_no_more(void**) {
 /// Each channel has an order of its own; what is merely old is dropped without being counted as bad.
 void old_messages_are_dropped_but_are_no_offence(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   ArmState arm;
   Target target;
   const JointVector zero = JointVector::Zero(kJoints);
@@ -183,7 +183,7 @@ void old_messages_are_dropped_but_are_no_offence(void**) {
 
 void no_message_allocates_once_each_kind_has_been_seen(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Ages());
+  Admission admission(kJoints, Settings());
   ArmState arm;
   Target target;
   const JointVector zero = JointVector::Zero(kJoints);

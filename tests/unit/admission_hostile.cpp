@@ -64,7 +64,7 @@ std::vector<Channel> channels() {
 }
 
 bool accepts(const Channel& channel, const Bytes& bytes) {
-  Admission gate(kJoints, Ages());
+  Admission gate(kJoints, Settings());
   // On the heap and to the byte, so that a read beyond the end is seen by whoever watches the heap.
   const Bytes exact(bytes.begin(), bytes.end());
   const bool accepted = channel.admit(gate, exact.data(), exact.size());

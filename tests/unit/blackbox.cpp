@@ -31,7 +31,7 @@ struct Flight {
   Config config = load_config("firmware/config/lwa3.yaml", {});
   std::atomic<bool> requested{false};
   std::unique_ptr<Blackbox> blackbox;
-  Admission admission{7, config.model.settings.ages};
+  Admission admission{7, config.model.settings};
   Mail<ArmState> arm;
   Mail<Target> target;
   std::unique_ptr<Mail<ObstacleSet>> obstacles = std::make_unique<Mail<ObstacleSet>>();

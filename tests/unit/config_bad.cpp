@@ -111,6 +111,7 @@ void a_bad_robot_is_refused_with_one_line(void**) {
       {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: hook}", "hook"},
       {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool, tool: 1}", "robot.tool"},
       {"robot: urdf/lwa3.urdf", "robot"},
+      {"robot: {urdf: \"a\\nb\", base: base_link, tip: tool}", "robot.urdf"},
       {"robot: {urdf: [], base: base_link, tip: tool}", "robot.urdf"},
   };
   int wrong = 0;
@@ -119,6 +120,12 @@ void a_bad_robot_is_refused_with_one_line(void**) {
     wrong += complain_unless(one_line_with(message, {bad.culprit}), bad.yaml, message);
   }
   assert_int_equal(wrong, 0);
+}
+
+void a_name_too_long_for_a_file_is_no_file(void**) {
+  const std::string name(5000, 'u');
+  assert_true(
+      one_line_with(said("robot: {urdf: " + name + ", base: base_link, tip: tool}"), {name + ": cannot be read"}));
 }
 
 void what_is_no_yaml_is_refused_with_one_line(void**) {
@@ -168,6 +175,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_bad_config_is_refused_with_one_line_naming_file_and_key),
       cmocka_unit_test(a_bad_robot_is_refused_with_one_line),
+      cmocka_unit_test(a_name_too_long_for_a_file_is_no_file),
       cmocka_unit_test(what_is_no_yaml_is_refused_with_one_line),
       cmocka_unit_test(a_file_that_cannot_be_read_is_named),
       cmocka_unit_test(a_truncated_config_never_crashes),

@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr int kFacts = 11;
+constexpr int kFacts = 12;
 static_assert(sizeof(Facts) == kFacts, "a new fact belongs into facts_of()");
 const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
 
@@ -26,7 +26,8 @@ Facts facts_of(unsigned bits) {
                              &facts.target_known,
                              &facts.target_fresh,
                              &facts.late,
-                             &facts.stop};
+                             &facts.stop,
+                             &facts.rival};
   for (int i = 0; i < kFacts; ++i) *all[i] = bits >> i & 1;
   return facts;
 }
@@ -64,12 +65,16 @@ bool moves(Mode mode) {
 void tracking_needs_everything_fresh(void**) {
   check_always("track", [](const auto&, const Facts& f, const auto& next) {
     return next.mode != Mode::kTrack || (f.arm_fresh && !f.arm_lost && !f.arm_broke && f.obstacles_fresh &&
-                                         f.target_known && f.target_fresh && !f.late && !f.stop);
+                                         f.target_known && f.target_fresh && !f.late && !f.stop && !f.rival);
   });
 }
 
 void a_wish_to_stop_never_leads_to_moving(void**) {
   check_always("stop", [](const auto&, const Facts& f, const auto& next) { return !f.stop || !moves(next.mode); });
+}
+
+void beside_another_controller_nothing_moves(void**) {
+  check_always("rival", [](const auto&, const Facts& f, const auto& next) { return !f.rival || !moves(next.mode); });
 }
 
 void nothing_moves_without_a_fresh_arm_state(void**) {
@@ -102,7 +107,7 @@ void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
 void a_fault_lasts_until_the_arm_is_consistent_again(void**) {
   check_always("latched", [](const Supervision& last, const Facts& f, const auto& next) {
     if (last.mode != Mode::kFault || f.arm_broke || f.arm_lost) return true;
-    if (f.arm_known && f.arm_fresh && f.arm_consistent && !f.stop) return next.mode != Mode::kFault;
+    if (f.arm_known && f.arm_fresh && f.arm_consistent && !f.stop && !f.rival) return next.mode != Mode::kFault;
     return next.mode == Mode::kFault && next.fault == last.fault;
   });
 }
@@ -116,15 +121,15 @@ void only_a_fault_has_a_fault(void**) {
 void old_obstacles_and_lateness_brake(void**) {
   check_always("brake", [](const Supervision& last, const Facts& f, const auto& next) {
     if (last.mode == Mode::kWait || last.mode == Mode::kFault || f.arm_broke || f.arm_lost) return true;
-    const bool reason = f.stop || !f.arm_fresh || !f.obstacles_fresh || f.late;
+    const bool reason = f.stop || f.rival || !f.arm_fresh || !f.obstacles_fresh || f.late;
     return reason == (next.mode == Mode::kBrake);
   });
 }
 
 void without_a_fresh_target_it_holds(void**) {
   check_always("hold", [](const Supervision& last, const Facts& f, const auto& next) {
-    const bool calm =
-        f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_broke && f.obstacles_fresh && !f.late && !f.stop;
+    const bool calm = f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_broke && f.obstacles_fresh && !f.late &&
+                      !f.stop && !f.rival;
     if (last.mode == Mode::kWait || last.mode == Mode::kFault || !calm) return true;
     return next.mode == (f.target_known && f.target_fresh ? Mode::kTrack : Mode::kHold);
   });
@@ -187,6 +192,10 @@ void an_ordinary_run(void**) {
   then(Mode::kFault, "consistent");
   f.arm_consistent = true;
   then(Mode::kHold, "holding");
+  f.rival = true;
+  then(Mode::kBrake, "another controller");
+  f.rival = false;
+  then(Mode::kTrack, "tracking");
   f.stop = true;
   then(Mode::kBrake, "stop");
 }
@@ -197,6 +206,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(tracking_needs_everything_fresh),
       cmocka_unit_test(a_wish_to_stop_never_leads_to_moving),
+      cmocka_unit_test(beside_another_controller_nothing_moves),
       cmocka_unit_test(nothing_moves_without_a_fresh_arm_state),
       cmocka_unit_test(nothing_starts_without_consistent_arm_states_and_known_obstacles),
       cmocka_unit_test(a_start_is_always_a_hold),

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <lcm/lcm-cpp.hpp>
+#include <queue>
+
+#include "host/relay/mischief.h"
+
+namespace {
+
+using namespace sidestep::relay;
+
+std::atomic<bool> stop{false};
+
+double monotonic_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Later {
+  bool operator()(const Delivery& a, const Delivery& b) const { return a.due_s > b.due_s; }
+};
+
+/// One way from one network to another.
+class Relay {
+ public:
+  Relay(const std::string& from, const std::string& to, Mischief mischief)
+      : from_(from), to_(to), mischief_(std::move(mischief)) {
+    if (!from_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", from));
+    if (!to_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", to));
+    from_.subscribe(".*", &Relay::take, this)->setQueueCapacity(20000);
+  }
+
+  Counts run() {
+    while (!stop) {
+      const double wait_s = waiting_.empty() ? 0.05 : std::min(0.05, waiting_.top().due_s - monotonic_s());
+      from_.handleTimeout(wait_s > 0.0 ? static_cast<int>(wait_s * 1e3) + 1 : 0);
+      for (; !waiting_.empty() && waiting_.top().due_s <= monotonic_s(); waiting_.pop()) send(waiting_.top());
+    }
+    return mischief_.counts();
+  }
+
+ private:
+  void take(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    const auto* bytes = static_cast<const uint8_t*>(buffer->data);
+    const double now_s = monotonic_s();
+    for (Delivery& delivery : mischief_.deliver(channel, {bytes, bytes + buffer->data_size}, now_s)) {
+      if (delivery.due_s <= now_s)
+        send(delivery);
+      else
+        waiting_.push(std::move(delivery));
+    }
+  }
+
+  void send(const Delivery& delivery) {
+    to_.publish(delivery.channel, delivery.bytes.data(), static_cast<unsigned>(delivery.bytes.size()));
+  }
+
+  lcm::LCM from_, to_;
+  Mischief mischief_;
+  std::priority_queue<Delivery, std::vector<Delivery>, Later> waiting_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Passes LCM messages from one network to another as a bad network would.");
+  std::string from, to;
+  std::vector<std::string> rules;
+  unsigned seed = 1;
+  app.add_option("--from", from, "LCM network to listen on")->required()->type_name("URL");
+  app.add_option("--to", to, "LCM network to send to, another one; for the way back start a second relay")
+      ->required()
+      ->type_name("URL");
+  app.add_option("--rule", rules,
+                 "CHANNEL:drop=SHARE,duplicate=SHARE,reorder=SHARE,corrupt=SHARE,delay=S or delay=S..S; CHANNEL is a "
+                 "regular expression, the first rule that fits counts, other channels pass unharmed")
+      ->type_name("RULE");
+  app.add_option("--seed", seed, "of all chance")->capture_default_str();
+  app.footer(
+      "Example: relay --from udpm://239.255.76.67:7667 --to udpm://239.255.76.67:7668 \\\n"
+      "               --rule 'ARM_STATE:drop=0.3,delay=0.005..0.05' --rule '.*:corrupt=0.01'\n"
+      "Stops on Ctrl-C or SIGTERM. Exit codes: 0 stopped as asked, 2 wrong arguments or no network.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  std::signal(SIGINT, [](int) { stop = true; });
+  std::signal(SIGTERM, [](int) { stop = true; });
+  try {
+    if (from == to) throw std::runtime_error("--from and --to must be two networks");
+    std::vector<Rule> parsed;
+    for (const std::string& rule : rules) parsed.push_back(parse_rule(rule));
+    const Counts counts = Relay(from, to, Mischief(parsed, seed)).run();
+    fmt::print("relay: {} messages, {} dropped, {} corrupted, {} duplicated, {} reordered\n", counts.received,
+               counts.dropped, counts.corrupted, counts.duplicated, counts.reordered);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "relay: {}\n", error.what());
+    return 2;
+  }
+}

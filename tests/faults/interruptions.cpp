@@ -1,0 +1,137 @@
+#include <csignal>
+
+#include "tests/support/check.h"
+#include "tests/support/live_scene.h"
+#include "tests/support/lwa3.h"
+
+using namespace sidestep;
+using test::check_stream;
+using test::LiveArm;
+using test::LiveScene;
+using test::Process;
+using test::start_controller;
+
+namespace {
+
+using Status = controller_status_t;
+
+bool any(const LiveArm& arm, size_t first, const std::function<bool(const Status&)>& is) {
+  for (size_t i = first; i < arm.peer.statuses.size(); ++i)
+    if (is(arm.peer.statuses[i])) return true;
+  return false;
+}
+
+/// What was missed is counted and left out: no burst of commands, and braking before it goes on.
+void a_controller_stopped_and_continued_brakes_and_goes_on(void**) {
+  LiveScene scene("sidestep");
+  scene.controller.signal(SIGSTOP);
+  scene.arm.run(0.5);
+  const int64_t skipped = scene.arm.status().skipped_cycles;
+  const size_t first = scene.arm.peer.statuses.size(), commands = scene.arm.peer.commands.size();
+  scene.controller.signal(SIGCONT);
+  scene.arm.run(0.1);
+  const size_t soon = scene.arm.peer.commands.size() - commands;
+  check(soon <= 14, "%zu commands in 0.1 s", soon);
+  assert_true(
+      any(scene.arm, first, [](const Status& s) { return s.mode == Status::BRAKE || s.mode == Status::FAULT; }));
+  assert_true(scene.arm.status().skipped_cycles - skipped > 40);
+  assert_true(scene.arm.run_until(Status::TRACK, 2.0));
+  scene.wander(0.8);
+  check_stream(scene.arm);
+}
+
+/// The simulator or driver is gone and comes back with the arm somewhere else.
+void an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is(void**) {
+  LiveScene scene("sidestep");
+  scene.arm.target_speaks = scene.arm.obstacles_speak = scene.arm.arm_speaks = false;
+  scene.arm.run(0.4);
+  assert_true(scene.arm.status().mode == Status::FAULT);
+  check_stream(scene.arm);
+  JointVector elsewhere_rad = test::home_rad();
+  elsewhere_rad[0] -= 1.0;
+  elsewhere_rad[3] += 0.7;
+  LiveArm arm(test::lwa3().limits, elsewhere_rad);
+  arm.target_m = scene.arm.target_m;
+  arm.run(0.4);
+  assert_int_equal(arm.peer.commands.size(), 0);  // half a second of consistent states first
+  assert_true(arm.run_until(Status::TRACK, 2.0));
+  arm.run(1.0);
+  check_stream(arm);
+}
+
+/// Like SIGSTOP and SIGCONT to the arm's side: it freezes where it is and goes on.
+void an_arm_that_pauses_is_a_fault_and_taken_up_again(void**) {
+  LiveScene scene("sidestep");
+  for (int i = 0; i < 3; ++i) {
+    const size_t first = scene.arm.peer.statuses.size();
+    scene.arm.peer.listen(0.3);
+    assert_true(any(scene.arm, first, [](const Status& s) { return s.mode == Status::FAULT; }));
+    scene.arm.run(0.05);
+    assert_true(scene.arm.run_until(Status::TRACK, 2.0));
+    scene.wander(0.4);
+  }
+  check_stream(scene.arm);
+}
+
+void a_second_controller_waits_until_the_first_is_gone(void**) {
+  LiveScene scene("sidestep");
+  Process second = start_controller("sidestep");
+  const size_t first = scene.arm.peer.statuses.size();
+  scene.wander(1.6);
+  assert_false(
+      any(scene.arm, first, [](const Status& s) { return s.mode == Status::BRAKE || s.mode == Status::FAULT; }));
+  assert_true(any(scene.arm, first, [](const Status& s) {
+    return s.mode == Status::WAIT && s.message.find("another controller") != std::string::npos;
+  }));
+  scene.arm.target_speaks = false;
+  scene.arm.run(0.8);  // the arm rests
+  scene.controller.signal(SIGKILL);
+  assert_int_equal(scene.controller.wait(1.0), 128 + SIGKILL);
+  LiveArm arm(test::lwa3().limits,
+              Eigen::Map<const Eigen::VectorXd>(scene.arm.peer.commands.back().joint_position.data(), 7));
+  arm.target_m = Vector3(0.1, 0.45, 0.7);
+  assert_true(arm.run_until(Status::TRACK, 3.0));
+  arm.run(0.5);
+  check_stream(arm);
+}
+
+/// Commands of somebody else while the arm moves: they cannot be stopped, but our own arm motion can.
+void commands_of_somebody_else_brake(void**) {
+  LiveScene scene("sidestep");
+  joint_command_t foreign = scene.arm.peer.commands.back();
+  foreign.utime += 123456789;
+  foreign.seq += 1000000;
+  test::LcmPeer rival;
+  rival.send("ARM_COMMAND", foreign);
+  rival.listen(0.3);
+  bool braked = false;
+  for (const Status& status : rival.statuses) braked |= status.message.find("another controller") != std::string::npos;
+  assert_true(braked);
+}
+
+void without_permission_for_real_time_it_runs_and_says_so(void**) {
+  Process controller =
+      start_controller("sidestep", {"/usr/bin/setpriv", "--bounding-set=-sys_nice,-ipc_lock,-sys_resource",
+                                    "/usr/bin/prlimit", "--rtprio=0:0", "--memlock=65536:65536"});
+  LiveArm arm(test::lwa3().limits, test::home_rad());
+  arm.target_m = Vector3(0.1, 0.45, 0.7);
+  check(arm.run_until(Status::TRACK, 10.0), "%s", controller.output().c_str());
+  arm.run(0.3);
+  check(arm.status().limiting & Status::LIMITING_NOT_REALTIME, "limiting 0x%x", arm.status().limiting);
+  check(controller.output().find("is not permitted") != std::string::npos, "%s", controller.output().c_str());
+  check_stream(arm);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(a_controller_stopped_and_continued_brakes_and_goes_on, test::kill_processes),
+      cmocka_unit_test_teardown(an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is, test::kill_processes),
+      cmocka_unit_test_teardown(an_arm_that_pauses_is_a_fault_and_taken_up_again, test::kill_processes),
+      cmocka_unit_test_teardown(a_second_controller_waits_until_the_first_is_gone, test::kill_processes),
+      cmocka_unit_test_teardown(commands_of_somebody_else_brake, test::kill_processes),
+      cmocka_unit_test_teardown(without_permission_for_real_time_it_runs_and_says_so, test::kill_processes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,137 @@
+#include "firmware/control/jumps.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "tests/support/allocation_count.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::Random;
+
+namespace {
+
+constexpr double kSpeedBound_mps = 2.0, kMemory_s = 0.3, kPeriod_s = 0.01;
+
+Obstacle ball(int32_t id, const Vector3& position_m) {
+  return {id, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
+}
+
+/// A sender of sets, one a period.
+struct Scene {
+  std::unique_ptr<Jumps> jumps = std::make_unique<Jumps>(kSpeedBound_mps, kMemory_s);
+  std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
+  double now_s = 0.0;
+
+  /// How many old places were added.
+  int send(const std::vector<Obstacle>& obstacles, double elapsed_s = kPeriod_s) {
+    now_s += elapsed_s;
+    set->count = static_cast<int>(obstacles.size());
+    std::copy(obstacles.begin(), obstacles.end(), set->obstacles.begin());
+    jumps->complete(*set, elapsed_s, now_s);
+    return set->count - static_cast<int>(obstacles.size());
+  }
+  const Obstacle& last() const { return set->obstacles[static_cast<size_t>(set->count - 1)]; }
+};
+
+void what_jumps_counts_in_its_old_place_too_for_a_while(void**) {
+  Scene scene;
+  assert_int_equal(scene.send({ball(1, Vector3(0, 0, 1)), ball(2, Vector3(1, 0, 1))}), 0);
+  int periods = 0;
+  while (scene.send({ball(1, Vector3(0, 1, 1)), ball(2, Vector3(1, 0, 1))}) == 1 && ++periods < 1000) {
+    assert_int_equal(scene.last().id, 1);
+    check_near(scene.last().capsule.start, Vector3(0, 0, 1), 0);
+    check_near(scene.last().velocity_mps, Vector3(0, 0, 0), 0);
+  }
+  check_near(periods * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
+}
+
+void what_moves_as_fast_as_it_may_is_no_jump(void**) {
+  Scene scene;
+  for (int i = 0; i < 200; ++i)
+    assert_int_equal(scene.send({ball(1, Vector3(kSpeedBound_mps * kPeriod_s * i, 0, 0))}), 0);
+  for (int i = 0; i < 20; ++i)  // after a gap it may be farther
+    assert_int_equal(scene.send({ball(1, Vector3(0, kSpeedBound_mps * 0.5 * i, 0))}, i == 0 ? 10.0 : 0.5), 0);
+  Obstacle fast = ball(1, Vector3(0, 0, 0));
+  fast.velocity_mps = Vector3(20, 0, 0);
+  scene.send({fast}, 100.0);
+  for (int i = 0; i < 20; ++i) {
+    fast.capsule.start.x() = fast.capsule.end.x() += 20 * kPeriod_s;
+    assert_int_equal(scene.send({fast}), 0);
+  }
+}
+
+/// A rod that turns by half is the same rod; one that suddenly stands across has jumped.
+void an_axis_jumps_when_an_end_of_it_does(void**) {
+  const Vector3 a(-0.5, 0, 0), b(0.5, 0, 0), c(0, 0.5, 0), d(0, -0.5, 0);
+  const auto rod = [](const Vector3& start, const Vector3& end) {
+    return Obstacle{1, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
+  };
+  Scene scene;
+  scene.send({rod(a, b)});
+  assert_int_equal(scene.send({rod(b, a)}), 0);
+  assert_int_equal(scene.send({rod(c, d)}), 1);
+}
+
+void what_comes_and_goes_does_not_jump(void**) {
+  Scene scene;
+  scene.send({ball(1, Vector3(0, 0, 0))});
+  assert_int_equal(scene.send({}), 0);
+  assert_int_equal(scene.send({ball(2, Vector3(1, 0, 0))}), 0);
+  assert_int_equal(scene.send({ball(1, Vector3(5, 0, 0))}), 0);
+}
+
+void the_order_of_a_message_does_not_matter(void**) {
+  Random random(1);
+  std::vector<Obstacle> obstacles;
+  for (int i = 0; i < 100; ++i) obstacles.push_back(ball(i / 2, random.inside(-2, 2)));  // two with each id
+  Scene scene;
+  scene.send(obstacles);
+  for (int i = 0; i < 20; ++i) {
+    std::rotate(obstacles.begin(), obstacles.begin() + 2 * random.index(50), obstacles.end());
+    assert_int_equal(scene.send(obstacles), 0);
+  }
+}
+
+void a_clock_that_is_set_back_forgets(void**) {
+  Scene scene;
+  scene.now_s = 1000.0;
+  scene.send({ball(1, Vector3(0, 0, 0))});
+  assert_int_equal(scene.send({ball(1, Vector3(1, 0, 0))}), 1);
+  scene.now_s = 5.0;
+  assert_int_equal(scene.send({ball(1, Vector3(1, 0, 0))}), 0);
+}
+
+void as_many_as_a_set_holds_are_bounded_and_allocate_nothing(void**) {
+  Random random(2);
+  Scene scene;
+  std::vector<Obstacle> obstacles;
+  for (int i = 0; i < kMaxObstacles; ++i) obstacles.push_back(ball(random.index(5000), random.inside(-2, 2)));
+  const int64_t before = test::allocation_count();
+  for (int i = 0; i < 10; ++i) {
+    for (Obstacle& obstacle : obstacles) obstacle = ball(obstacle.id, random.inside(-2, 2));
+    assert_int_equal(scene.send(obstacles), 0);  // full
+  }
+  obstacles.resize(kMaxObstacles - 10);
+  assert_int_equal(scene.send(obstacles), 10);
+  assert_int_equal(scene.set->count, kMaxObstacles);
+  obstacles.resize(1000);
+  assert_int_equal(scene.send(obstacles), 64);
+  assert_int_equal(test::allocation_count() - before, 0);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(what_jumps_counts_in_its_old_place_too_for_a_while),
+      cmocka_unit_test(what_moves_as_fast_as_it_may_is_no_jump),
+      cmocka_unit_test(an_axis_jumps_when_an_end_of_it_does),
+      cmocka_unit_test(what_comes_and_goes_does_not_jump),
+      cmocka_unit_test(the_order_of_a_message_does_not_matter),
+      cmocka_unit_test(a_clock_that_is_set_back_forgets),
+      cmocka_unit_test(as_many_as_a_set_holds_are_bounded_and_allocate_nothing),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
