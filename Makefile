@@ -14,7 +14,7 @@ SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
 # Eigen at -O2 makes gcc see uninitialised values where there are none.
 CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
-LIBS     := -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
+LIBS     := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
 
 sources   = $(filter-out %/main.cpp,$(wildcard $(1)))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
@@ -24,7 +24,7 @@ SIM      := $(call objects,$(call sources,host/sim/*.cpp))
 CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -36,6 +36,9 @@ run: all ## play SCENARIO (default paper-c) in real time, then the table and the
 
 test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed, N failed
 	@$(PYTHON) tests/run.py $(TESTS)
+
+peers-test: all $(READY).peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+	@$(PYTHON) tests/peers/kinematics.py
 
 ##@ Building
 
@@ -57,7 +60,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures lint clean help
+.PHONY: all run test peers-test campaign figures lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -65,6 +68,11 @@ $(READY): host/setup/debian.txt host/setup/python.txt
 	@test -x $(PYTHON) || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
 	@echo "set-up: Python packages of host/setup/python.txt"
 	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r host/setup/python.txt
+	@touch $@
+
+$(READY).peers: host/setup/python-peers.txt | $(READY)
+	@echo "set-up: Python packages of $<"
+	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r $<
 	@touch $@
 
 $(READY).%: host/setup/debian.txt | $(READY)
@@ -96,6 +104,9 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
