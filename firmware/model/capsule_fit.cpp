@@ -1,6 +1,7 @@
 #include "firmware/model/capsule_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -31,6 +32,7 @@ std::vector<Vector3> directions(int n, double lowest_z) {
 Capsule capsule_along(const Vector3& axis, const std::vector<Vector3>& points) {
   const Vector3 u = axis.unitOrthogonal(), v = axis.cross(u);
   std::vector<Eigen::Vector2d> shadow;
+  shadow.reserve(points.size());
   for (const Vector3& p : points) shadow.emplace_back(u.dot(p), v.dot(p));
   const Circle circle = circle_around(shadow);
   const double radius_m = std::max(circle.radius_m, kLeastRadius_m);
@@ -64,6 +66,7 @@ std::vector<Vector3> outermost(const std::vector<Vector3>& points) {
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   std::vector<Vector3> found;
+  found.reserve(chosen.size());
   for (size_t i : chosen) found.push_back(points[i]);
   return found;
 }
@@ -169,10 +172,13 @@ Capsule capsule_around(const std::vector<Vector3>& points) {
   };
   for (int i = 0; i < 3; ++i) consider(Vector3::Unit(i));
   for (const Vector3& direction : directions(100, 0.0)) consider(direction);
-  for (double step = 0.1; step > 1e-3; step *= 0.6) {
-    const Vector3 u = axis.unitOrthogonal(), v = axis.cross(u), middle = axis;
+  double step = 0.1;
+  for (int round = 0; round < 10; ++round, step *= 0.6) {
+    const Vector3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    std::array<Vector3, 8> around;
     for (int i = 0; i < 8; ++i)
-      consider((middle + step * (std::cos(i * M_PI_4) * u + std::sin(i * M_PI_4) * v)).normalized());
+      around[i] = (axis + step * (std::cos(i * M_PI_4) * u + std::sin(i * M_PI_4) * v)).normalized();
+    for (const Vector3& direction : around) consider(direction);
   }
   return capsule_along(axis, points);
 }

@@ -80,7 +80,7 @@ CapsuleFit fit_capsules_cached(const Mesh& mesh, int most) {
   if (cache.empty()) return fit_capsules(mesh, most);
   const fs::path file = cache / fmt::format("{:016x}.capsules", hash_of(mesh, most));
   if (const std::optional<CapsuleFit> known = read(file)) return *known;
-  const CapsuleFit fit = fit_capsules(mesh, most);
+  CapsuleFit fit = fit_capsules(mesh, most);
   write(file, fit);
   return fit;
 }

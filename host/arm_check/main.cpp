@@ -96,6 +96,19 @@ void print_poses(const Arm& arm) {
   }
 }
 
+void describe(CLI::App& app, Arguments& arguments) {
+  app.add_option("urdf", arguments.urdf, "robot description")->required();
+  app.add_option("--base", arguments.base, "base link")->required();
+  app.add_option("--tip", arguments.tip, "tip link, the tool")->required();
+  app.add_option("--package-path", arguments.meshes.package_path, "folder in which package:// is looked for first")
+      ->allow_extra_args(false);
+  app.add_option("--capsules-per-mesh", arguments.meshes.capsules_per_mesh, "most capsules for one mesh (default 3)")
+      ->check(CLI::Range(1, 8));
+  app.add_flag("--fk", arguments.forward_kinematics,
+               "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
+  app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse it.");
+}
+
 int run(const Arguments& arguments) {
   const Arm arm = load_arm(arguments.urdf, arguments.base, arguments.tip, arguments.meshes);
   if (arguments.forward_kinematics) {
@@ -119,16 +132,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Shows what the controller makes of a URDF: joints, limits, the capsules around the links, what is odd."};
   sidestep::Arguments arguments;
-  app.add_option("urdf", arguments.urdf, "robot description")->required();
-  app.add_option("--base", arguments.base, "base link")->required();
-  app.add_option("--tip", arguments.tip, "tip link, the tool")->required();
-  app.add_option("--package-path", arguments.meshes.package_path, "folder in which package:// is looked for first")
-      ->allow_extra_args(false);
-  app.add_option("--capsules-per-mesh", arguments.meshes.capsules_per_mesh, "most capsules for one mesh (default 3)")
-      ->check(CLI::Range(1, 8));
-  app.add_flag("--fk", arguments.forward_kinematics,
-               "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
-  app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse it.");
+  sidestep::describe(app, arguments);
   try {
     app.parse(argc, argv);
     return sidestep::run(arguments);
