@@ -52,9 +52,9 @@ CapsuleFit ShapeCollector::enclose(const urdf::Link& link, const urdf::Geometry&
 }
 
 void ShapeCollector::remark_on(const urdf::Link& link) {
-  const bool looks_like_something = !link.visual_array.empty() || link.inertial;
-  if (link.collision_array.empty() && looks_like_something)
-    remarks_.push_back(fmt::format("link '{}' has no collision geometry: nothing keeps it clear", link.name));
+  if (link.collision_array.empty() && !link.visual_array.empty())
+    remarks_.push_back(
+        fmt::format("link '{}' can be seen but has no collision geometry: nothing keeps it clear", link.name));
   const auto& joint = link.parent_joint;
   if (chain_links_.count(link.name) == 0 && joint && joint->type != urdf::Joint::FIXED)
     remarks_.push_back(fmt::format("joint '{}' is no part of the chain{}: what hangs on it counts as if it were at 0",
