@@ -16,7 +16,7 @@ CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-m
 # make sanitize: which sanitizers to build with. The typed subscriptions of LCM's C++ binding are what they must not see.
 CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
-LIBS     := -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
+LIBS     := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
 
 sources   = $(filter-out %/main.cpp,$(wildcard $(1)))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
@@ -33,7 +33,7 @@ FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
               $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/config io/config_section))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
-PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay
+PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -50,6 +50,9 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
+
+peers-test: all $(READY).peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+	@$(PYTHON) tests/peers/kinematics.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
 	@$(MAKE) $(FUZZERS)
@@ -84,7 +87,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test faults fuzz sanitize campaign figures timing soak lint clean help
+.PHONY: all run test peers-test faults fuzz sanitize campaign figures timing soak lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -92,6 +95,11 @@ $(READY): host/setup/debian.txt host/setup/python.txt
 	@test -x $(PYTHON) || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
 	@echo "set-up: Python packages of host/setup/python.txt"
 	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r host/setup/python.txt
+	@touch $@
+
+$(READY).peers: host/setup/python-peers.txt | $(READY)
+	@echo "set-up: Python packages of $<"
+	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r $<
 	@touch $@
 
 $(READY).%: host/setup/debian.txt | $(READY)
@@ -130,6 +138,9 @@ $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
 $(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
+	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)

@@ -165,6 +165,11 @@ Arm read_robot(Section robot, const std::string& config_file, const Overrides& o
   robot.text("urdf", urdf);
   robot.text("base", base);
   robot.text("tip", tip);
+  MeshOptions meshes;
+  robot.texts("package_path", meshes.package_path);
+  double capsules_per_mesh = meshes.capsules_per_mesh;
+  robot.number("capsules_per_mesh", capsules_per_mesh, 1.0, 8.0);
+  meshes.capsules_per_mesh = static_cast<int>(capsules_per_mesh);
   robot.finish();
   if (!overrides.urdf.empty()) urdf = overrides.urdf;
   if (!overrides.base.empty()) base = overrides.base;
@@ -172,7 +177,7 @@ Arm read_robot(Section robot, const std::string& config_file, const Overrides& o
   if (urdf.empty()) robot.fail("urdf", "is missing (or give --urdf)");
   if (base.empty()) robot.fail("base", "is missing (or give --base)");
   if (tip.empty()) robot.fail("tip", "is missing (or give --tip)");
-  return load_arm(overrides.urdf.empty() ? find_urdf(config_file, urdf) : urdf, base, tip);
+  return load_arm(overrides.urdf.empty() ? find_urdf(config_file, urdf) : urdf, base, tip, meshes);
 }
 
 }  // namespace

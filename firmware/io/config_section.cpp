@@ -100,6 +100,17 @@ void Section::text(const std::string& key, std::string& value) {
   value = text;
 }
 
+void Section::texts(const std::string& key, std::vector<std::string>& values) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (!node.IsSequence()) fail(key, "must be a list of texts");
+  values.clear();
+  for (const YAML::Node& entry : node) {
+    if (!entry.IsScalar() || entry.Scalar().empty()) fail(key, "must be a list of texts");
+    values.push_back(entry.Scalar());
+  }
+}
+
 void Section::choice(const std::string& key, std::string& value, const std::vector<std::string>& choices) {
   text(key, value);
   for (const std::string& choice : choices)

@@ -31,6 +31,7 @@ class Section {
   void not_negative(const std::string& key, double& value);
   void flag(const std::string& key, bool& value);
   void text(const std::string& key, std::string& value);
+  void texts(const std::string& key, std::vector<std::string>& values);
   void choice(const std::string& key, std::string& value, const std::vector<std::string>& choices);
 
   /// One number for all joints or a list with one each; may be infinite.

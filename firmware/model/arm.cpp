@@ -1,7 +1,6 @@
 #include "firmware/model/arm.h"
 
 #include <console_bridge/console.h>
-#include <fmt/format.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
@@ -12,21 +11,15 @@
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 #include <limits>
-#include <set>
 #include <sstream>
-#include <stdexcept>
+
+#include "firmware/model/fail.h"
+#include "firmware/model/link_shapes.h"
 
 namespace sidestep {
 namespace {
 
-template <typename... Args>
-[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
-  std::string line = fmt::format(format, std::forward<Args>(args)...);
-  // Names come from the file and may hold anything.
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
-  throw std::runtime_error(line);
-}
+using sidestep::to_eigen;
 
 Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
@@ -34,14 +27,6 @@ Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
     result.translation()[row] = frame.p[row];
     for (int column = 0; column < 3; ++column) result.linear()(row, column) = frame.M(row, column);
   }
-  return result;
-}
-
-Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.translation() = Vector3(pose.position.x, pose.position.y, pose.position.z);
-  result.linear() =
-      Quaternion(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z).normalized().toRotationMatrix();
   return result;
 }
 
@@ -95,74 +80,11 @@ void check_joint(const std::string& file, const urdf::Joint& joint) {
   const auto& origin = joint.parent_to_joint_origin_transform;
   if (!to_eigen(origin).matrix().allFinite()) fail("{}: joint '{}': its origin is not finite", file, joint.name);
   if (!turns) return;
+  if (joint.mimic) fail("{}: joint '{}' mimics another: not supported", file, joint.name);
   const double norm = std::hypot(joint.axis.x, joint.axis.y, joint.axis.z);
   if (!(std::isfinite(norm) && norm > 1e-6)) fail("{}: joint '{}': its axis has no direction", file, joint.name);
   if (!joint.limits && joint.type == urdf::Joint::REVOLUTE) fail("{}: joint '{}' has no <limit>", file, joint.name);
 }
-
-/// The capsule around one collision shape, in the frame of the shape.
-Capsule enclose(const std::string& file, const urdf::Link& link, const urdf::Geometry& geometry) {
-  const auto positive = [&](double length, const char* what) {
-    if (!(std::isfinite(length) && length > 0.0))
-      fail("{}: link '{}': a collision {} must be finite and positive", file, link.name, what);
-  };
-  if (geometry.type == urdf::Geometry::SPHERE) {
-    const auto& sphere = static_cast<const urdf::Sphere&>(geometry);
-    positive(sphere.radius, "radius");
-    return {Vector3::Zero(), Vector3::Zero(), sphere.radius};
-  }
-  if (geometry.type == urdf::Geometry::CYLINDER) {
-    const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-    positive(cylinder.radius, "radius");
-    positive(cylinder.length, "length");
-    const Vector3 half(0, 0, 0.5 * cylinder.length);
-    return {-half, half, cylinder.radius};
-  }
-  if (geometry.type == urdf::Geometry::BOX) {
-    const auto& box = static_cast<const urdf::Box&>(geometry);
-    for (double edge : {box.dim.x, box.dim.y, box.dim.z}) positive(edge, "box edge");
-    return capsule_around_box(Vector3(box.dim.x, box.dim.y, box.dim.z));
-  }
-  fail("{}: link '{}': collision meshes are not supported yet; use spheres, cylinders and boxes", file, link.name);
-}
-
-/// Walks from one link of the chain through everything that is fixed to it and collects the shapes.
-class ShapeCollector {
- public:
-  ShapeCollector(const std::string& file, const std::vector<std::string>& chain_links, std::vector<LinkShape>& shapes)
-      : file_(file), chain_links_(chain_links.begin(), chain_links.end()), shapes_(shapes) {}
-
-  void collect(const urdf::Link& link, int body, const Eigen::Isometry3d& body_from_link) {
-    for (const auto& collision : link.collision_array) {
-      if (!collision || !collision->geometry) fail("{}: link '{}': a collision has no geometry", file_, link.name);
-      Capsule capsule = enclose(file_, link, *collision->geometry);
-      const Eigen::Isometry3d body_from_shape = body_from_link * to_eigen(collision->origin);
-      if (!body_from_shape.matrix().allFinite())
-        fail("{}: link '{}': a collision origin is not finite", file_, link.name);
-      capsule.start = body_from_shape * capsule.start;
-      capsule.end = body_from_shape * capsule.end;
-      add({link.name, body, capsule});
-    }
-    for (const auto& child : link.child_links)
-      if (chain_links_.count(child->name) == 0)
-        collect(*child, body, body_from_link * to_eigen(child->parent_joint->parent_to_joint_origin_transform));
-  }
-
- private:
-  /// A shape inside another of its body adds nothing: a sphere that rounds the end of a cylinder, for one.
-  void add(const LinkShape& shape) {
-    for (const LinkShape& other : shapes_)
-      if (other.body == shape.body && contains(other.capsule_body, shape.capsule_body)) return;
-    for (size_t i = shapes_.size(); i-- > 0;)
-      if (shapes_[i].body == shape.body && contains(shape.capsule_body, shapes_[i].capsule_body))
-        shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
-    shapes_.push_back(shape);
-  }
-
-  const std::string& file_;
-  std::set<std::string> chain_links_;
-  std::vector<LinkShape>& shapes_;
-};
 
 void append_limits(JointLimits& limits, const urdf::Joint& joint) {
   const auto append = [](JointVector& vector, double value) {
@@ -179,17 +101,18 @@ void append_limits(JointLimits& limits, const urdf::Joint& joint) {
 
 }  // namespace
 
-Arm load_arm(const std::string& urdf_file, const std::string& base, const std::string& tip) {
+Arm load_arm(const std::string& urdf_file, const std::string& base, const std::string& tip, const MeshOptions& meshes) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf_file);
   const std::vector<std::string> links = path(urdf_file, *model, base, tip);
   for (size_t i = 1; i < links.size(); ++i) check_joint(urdf_file, *model->getLink(links[i])->parent_joint);
 
   Arm arm;
   KDL::Tree tree;
+  model->root_link_->inertial.reset();  // KDL has no place for it and would warn
   if (!kdl_parser::treeFromUrdfModel(*model, tree) || !tree.getChain(base, tip, arm.chain))
     fail("{}: no kinematic chain from '{}' to '{}'", urdf_file, base, tip);
 
-  ShapeCollector shapes(urdf_file, links, arm.shapes);
+  ShapeCollector shapes(urdf_file, links, meshes, arm.shapes, arm.remarks);
   Eigen::Isometry3d body_from_link = Eigen::Isometry3d::Identity();  // of the link before the next segment
   shapes.collect(*model->getLink(base), 0, body_from_link);
   for (unsigned i = 0; i < arm.chain.getNrOfSegments(); ++i) {

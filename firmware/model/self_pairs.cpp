@@ -27,27 +27,53 @@ JointVector sample(const Arm& arm, std::mt19937& random) {
   return q_rad;
 }
 
-}  // namespace
+/// Every joint in the middle of its range: a posture in which no arm is built to collide with itself.
+JointVector at_rest(const Arm& arm) {
+  const JointVector middle_rad = 0.5 * (arm.limits.lower_rad + arm.limits.upper_rad);
+  return middle_rad.array().isFinite().select(middle_rad, 0.0);
+}
 
-std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm) {
-  std::vector<std::pair<int, int>> pairs;
+bool touch(const Arm& arm, const Posture& posture, const std::pair<int, int>& pair) {
+  const Capsule a = placed(posture, arm.shapes[pair.first]), b = placed(posture, arm.shapes[pair.second]);
+  const NearestPoints points = nearest_on_axes(a, b);
+  return (points.a - points.b).norm() < a.radius_m + b.radius_m;
+}
+
+/// The pairs of shapes that are no neighbours; `overlaps`: those that touch because they are built that way.
+struct Pairs {
+  std::vector<std::pair<int, int>> free, overlaps;
+};
+
+Pairs sort_pairs(const Arm& arm) {
+  std::vector<std::pair<int, int>> all;
   for (int a = 0; a < static_cast<int>(arm.shapes.size()); ++a)
     for (int b = 0; b < a; ++b)
-      if (!neighbours(arm, a, b)) pairs.emplace_back(b, a);
+      if (!neighbours(arm, a, b)) all.emplace_back(b, a);
 
-  std::vector<int> touching(pairs.size(), 0);
+  std::vector<int> touching(all.size(), 0);
   std::mt19937 random(1);
   for (int i = 0; i < kSamples; ++i) {
     const Posture posture = forward(arm, sample(arm, random));
-    for (size_t p = 0; p < pairs.size(); ++p) {
-      const Capsule a = placed(posture, arm.shapes[pairs[p].first]), b = placed(posture, arm.shapes[pairs[p].second]);
-      const NearestPoints points = nearest_on_axes(a, b);
-      if ((points.a - points.b).norm() < a.radius_m + b.radius_m) ++touching[p];
-    }
+    for (size_t p = 0; p < all.size(); ++p)
+      if (touch(arm, posture, all[p])) ++touching[p];
   }
-  for (size_t p = pairs.size(); p-- > 0;)
-    if (touching[p] > kBuiltThatWay * kSamples) pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(p));
+  const Posture rest = forward(arm, at_rest(arm));
+  Pairs pairs;
+  for (size_t p = 0; p < all.size(); ++p) {
+    const bool built_that_way = touching[p] > kBuiltThatWay * kSamples || touch(arm, rest, all[p]);
+    (built_that_way ? pairs.overlaps : pairs.free).push_back(all[p]);
+  }
   return pairs;
+}
+
+}  // namespace
+
+std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm) {
+  return sort_pairs(arm).free;
+}
+
+std::vector<std::pair<int, int>> find_overlaps(const Arm& arm) {
+  return sort_pairs(arm).overlaps;
 }
 
 }  // namespace sidestep

@@ -120,12 +120,28 @@ class Arm::Builder {
   }
 
   void add_part(const urdf::Link& link, const urdf::Collision& collision, int body) {
-    const Solid solid = solid_of(link, collision.geometry.get());
+    KDL::Frame body_from_part = frame_of(collision.origin);
+    Solid solid;
+    if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(collision.geometry.get())) {
+      const CentredMesh centred = mesh_of(link, *mesh);
+      solid = centred.solid;
+      body_from_part = body_from_part * KDL::Frame({centred.centre_m.x(), centred.centre_m.y(), centred.centre_m.z()});
+    } else {
+      solid = solid_of(link, collision.geometry.get());
+    }
     if (!solid.size_m.allFinite() || bounding_radius_m(solid) > 100.0 || smallest_size_m(solid) <= 0.0) {
       fail(fmt::format("link '{}': a collision shape has a size out of range", link.name));
     }
     arm_.parts_.push_back({link.name, solid, arm_.bodies_[body].moving});
-    arm_.mounts_.push_back({body, frame_of(collision.origin)});
+    arm_.mounts_.push_back({body, body_from_part});
+  }
+
+  CentredMesh mesh_of(const urdf::Link& link, const urdf::Mesh& mesh) const {
+    try {
+      return load_mesh_solid(mesh.filename, file_, {mesh.scale.x, mesh.scale.y, mesh.scale.z});
+    } catch (const std::exception& error) {
+      fail(fmt::format("link '{}': {}", link.name, error.what()));
+    }
   }
 
   Solid solid_of(const urdf::Link& link, const urdf::Geometry* geometry) const {
@@ -138,10 +154,11 @@ class Arm::Builder {
     if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) {
       return {Shape::kBox, {box->dim.x, box->dim.y, box->dim.z}};
     }
-    fail(fmt::format("link '{}': a mesh as collision shape is not supported yet", link.name));
+    fail(fmt::format("link '{}': a collision shape of an unknown kind", link.name));
   }
 
   static double smallest_size_m(const Solid& solid) {
+    if (solid.shape == Shape::kMesh) return solid.size_m.maxCoeff();
     const int sizes = solid.shape == Shape::kSphere ? 1 : solid.shape == Shape::kCylinder ? 2 : 3;
     return solid.size_m.head(sizes).minCoeff();
   }

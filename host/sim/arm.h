@@ -23,7 +23,8 @@ struct ArmPart {
 class Arm {
  public:
   /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1
-  /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere or box.
+  /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere, box or readable
+  /// mesh.
   Arm(const std::string& urdf_file, const std::string& base, const std::string& tip);
 
   int joints() const { return joints_; }

@@ -6,10 +6,20 @@
 #include <cmath>
 #include <variant>
 
+#include "firmware/model/mesh.h"
+
 namespace sidestep::sim {
+
+struct Surface {
+  fcl::BVHModel<fcl::OBBRSSd> triangles;
+};
+
 namespace {
 
-using Geometry = std::variant<fcl::Sphered, fcl::Capsuled, fcl::Boxd, fcl::Cylinderd>;
+constexpr double kTouching_m = 1e-12;  // FCL gives 1e-323 for spheres that cut a triangle
+
+using Geometry =
+    std::variant<fcl::Sphered, fcl::Capsuled, fcl::Boxd, fcl::Cylinderd, const fcl::BVHModel<fcl::OBBRSSd>*>;
 
 Geometry geometry_of(const Solid& solid) {
   const Eigen::Vector3d& size = solid.size_m;
@@ -20,6 +30,8 @@ Geometry geometry_of(const Solid& solid) {
       return fcl::Boxd(size);
     case Shape::kCylinder:
       return fcl::Cylinderd(size.x(), size.y());
+    case Shape::kMesh:
+      return &solid.surface->triangles;
     case Shape::kSphere:
       break;
   }
@@ -27,7 +39,11 @@ Geometry geometry_of(const Solid& solid) {
 }
 
 const fcl::CollisionGeometryd* pointer(const Geometry& geometry) {
-  return std::visit([](const auto& shape) -> const fcl::CollisionGeometryd* { return &shape; }, geometry);
+  struct Address {
+    const fcl::CollisionGeometryd* operator()(const fcl::CollisionGeometryd& shape) const { return &shape; }
+    const fcl::CollisionGeometryd* operator()(const fcl::CollisionGeometryd* mesh) const { return mesh; }
+  };
+  return std::visit(Address{}, geometry);
 }
 
 // Zero when touching or penetrating. FCL's own signed distance is not used: libccd's expanding polytope fails an
@@ -96,6 +112,7 @@ double bounding_radius_m(const Solid& solid) {
     case Shape::kCapsule:
       return size.x() + size.y() / 2.0;
     case Shape::kBox:
+    case Shape::kMesh:
       return size.norm() / 2.0;
     case Shape::kCylinder:
       return std::hypot(size.x(), size.y() / 2.0);
@@ -105,12 +122,30 @@ double bounding_radius_m(const Solid& solid) {
   return size.x();
 }
 
+CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file, const Eigen::Vector3d& scale) {
+  const Mesh mesh = load_mesh(find_mesh(name, urdf_file, {}), scale);
+  Eigen::Vector3d lower_m = mesh.vertices.front(), upper_m = lower_m;
+  for (const Eigen::Vector3d& p : mesh.vertices) lower_m = lower_m.cwiseMin(p), upper_m = upper_m.cwiseMax(p);
+  const Eigen::Vector3d centre_m = 0.5 * (lower_m + upper_m);
+
+  std::vector<fcl::Vector3d> corners;
+  for (const Eigen::Vector3d& p : mesh.vertices) corners.push_back(p - centre_m);
+  std::vector<fcl::Triangle> triangles;
+  for (const auto& [a, b, c] : mesh.triangles)
+    triangles.emplace_back(static_cast<size_t>(a), static_cast<size_t>(b), static_cast<size_t>(c));
+  const auto surface = std::make_shared<Surface>();
+  surface->triangles.beginModel();
+  surface->triangles.addSubModel(corners, triangles);
+  surface->triangles.endModel();
+  return {{Shape::kMesh, upper_m - lower_m, surface}, centre_m};
+}
+
 double signed_distance_m(const Solid& a, const Eigen::Isometry3d& base_from_a, const Solid& b,
                          const Eigen::Isometry3d& base_from_b) {
   const Geometry a_geometry = geometry_of(a), b_geometry = geometry_of(b);
   const double gap = gap_m(a_geometry, base_from_a, b_geometry, base_from_b);
   const bool boxes = a.shape == Shape::kBox && b.shape == Shape::kBox;  // the only pair whose gap can miss a contact
-  if (gap > 0.0 && !boxes) return gap;
+  if (gap > kTouching_m && !boxes) return gap;
   if (b.shape == Shape::kCapsule) return capsule_distance_m(a, base_from_a, b, base_from_b);
   if (a.shape == Shape::kCapsule) return capsule_distance_m(b, base_from_b, a, base_from_a);
   const double depth = depth_m(a_geometry, base_from_a, b_geometry, base_from_b);

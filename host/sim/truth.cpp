@@ -10,7 +10,7 @@ Eigen::Vector3d half_axis_m(const Solid& solid) {
   if (solid.shape == Shape::kSphere) return Eigen::Vector3d::Zero();
   int along = 2;
   double length_m = solid.size_m.y();
-  if (solid.shape == Shape::kBox) length_m = solid.size_m.maxCoeff(&along);
+  if (solid.shape == Shape::kBox || solid.shape == Shape::kMesh) length_m = solid.size_m.maxCoeff(&along);
   return Eigen::Vector3d::Unit(along) * (length_m / 2.0);
 }
 

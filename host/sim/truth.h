@@ -37,8 +37,8 @@ class Truth {
   double clearance_m(const Obstacle& obstacle) const { return nearest({obstacle}).clearance_m; }
 
   /// The paper's distance: from the centre of the obstacle to the axes of the moving links (paper-notes, "The arm").
-  /// The axis of a cylinder is the segment between its end faces, of a box the one along its longest edge; a sphere is
-  /// its centre.
+  /// The axis of a cylinder is the segment between its end faces, of a box or a mesh in its bounding box the one along
+  /// the longest edge; a sphere is its centre.
   double axis_distance_m(const Obstacle& obstacle) const;
 
   /// The least of them, infinite without obstacles.

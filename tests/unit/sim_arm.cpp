@@ -94,7 +94,7 @@ void bad_arms_are_refused_in_one_line_naming_the_file(void**) {
       {robot(two + joint("base", "tip", "revolute", "nan 0 0")), "not a valid URDF: Malformed axis"},
       {robot(link("base") + link("tip", R"(<collision><geometry><mesh filename="a.stl"/></geometry></collision>)") +
              joint("base", "tip")),
-       "link 'tip': a mesh as collision shape is not supported yet"},
+       "link 'tip': mesh 'a.stl' is in no folder"},
       {robot(link("base") + link("tip", R"(<collision><geometry><sphere radius="-1"/></geometry></collision>)") +
              joint("base", "tip")),
        "link 'tip': a collision shape has a size"},

@@ -1,0 +1,78 @@
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep;
+using test::Process;
+using test::replaced;
+using test::scratch_file;
+
+namespace {
+
+constexpr double kLimit_s = 20.0;
+const char kForearm[] = R"(<cylinder radius="0.05" length="0.2765"/>)";
+
+struct Ended {
+  int code;
+  std::string output;
+};
+
+Ended arm_check(const std::string& urdf) {
+  Process process({"build/arm-check", urdf, "--base", "base_link", "--tip", "tool"});
+  const int code = process.wait(kLimit_s);
+  return {code, process.output()};
+}
+
+bool has(const Ended& ended, const std::string& words) {
+  return ended.output.find(words) != std::string::npos;
+}
+
+void an_arm_without_oddities_ends_with_code_0(void**) {
+  const Ended ended = arm_check("urdf/lwa3.urdf");
+  check(ended.code == 0 && has(ended, "7 joints") && !has(ended, "odd:"), "%d: %s", ended.code, ended.output.c_str());
+}
+
+void a_mesh_is_enclosed_and_its_slack_told(void**) {
+  // An edge of 0.6 m between two of 0.01 m, given in millimetres.
+  scratch_file("rod.obj", "v 0 0 0\nv 600 0 0\nv 0 10 0\nv 0 0 10\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
+  const std::string urdf =
+      replaced(test::text_of("urdf/lwa3.urdf"), kForearm, R"(<mesh filename="rod.obj" scale="0.001 0.001 0.001"/>)");
+  const Ended ended = arm_check(scratch_file("rod.urdf", urdf));
+  const size_t line = ended.output.find("  forearm_link  ");
+  check(line != std::string::npos, "%s", ended.output.c_str());
+  double body = 0, radius_m = 0, length_m = 0, slack_m = 0;
+  check(std::sscanf(ended.output.c_str() + line, " forearm_link %lf %lf %lf %lf", &body, &radius_m, &length_m,
+                    &slack_m) == 4,
+        "%s", ended.output.c_str());
+  check(radius_m < 0.01 && length_m > 0.58 && slack_m > 0.0 && slack_m < 0.02, "%s", ended.output.c_str());
+}
+
+void what_is_odd_is_told_with_code_1(void**) {
+  const std::string urdf =
+      replaced(test::text_of("urdf/lwa3.urdf"), R"(lower="-6.25" upper="6.25")", R"(lower="0.1" upper="0.15")");
+  const Ended ended = arm_check(scratch_file("odd.urdf", urdf));
+  check(ended.code == 1 && has(ended, "odd: joint 'joint_1' can only move 0.05 rad") &&
+            has(ended, "odd: joint 'joint_1' cannot be at 0"),
+        "%d: %s", ended.code, ended.output.c_str());
+}
+
+void what_the_controller_would_refuse_ends_with_code_2_and_one_line(void**) {
+  const std::string good = test::text_of("urdf/lwa3.urdf");
+  const std::string mesh = replaced(good, kForearm, R"(<mesh filename="package://nobody/none.stl"/>)");
+  const Ended missing = arm_check(scratch_file("missing.urdf", mesh));
+  check(missing.code == 2 && has(missing, "link 'forearm_link': mesh 'package://nobody/none.stl'"), "%d: %s",
+        missing.code, missing.output.c_str());
+  assert_int_equal(arm_check("no/such.urdf").code, 2);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(an_arm_without_oddities_ends_with_code_0, test::kill_processes),
+      cmocka_unit_test_teardown(a_mesh_is_enclosed_and_its_slack_told, test::kill_processes),
+      cmocka_unit_test_teardown(what_is_odd_is_told_with_code_1, test::kill_processes),
+      cmocka_unit_test_teardown(what_the_controller_would_refuse_ends_with_code_2_and_one_line, test::kill_processes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

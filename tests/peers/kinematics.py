@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Forward kinematics of arm-check against Pinocchio, for arms of example-robot-data and of urdf/, at random postures."""
+import argparse
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+
+ROOT = Path(__file__).resolve().parents[2]
+ROBOTS = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
+ARMS = [
+    (ROBOTS / "panda_description/urdf/panda.urdf", "panda_link0", "panda_hand_tcp"),
+    (ROBOTS / "xarm_description/urdf/xarm7.urdf", "link_base", "link_eef"),
+    (ROOT / "urdf/iiwa14.urdf", "base_link", "flange"),
+    (ROOT / "urdf/panda.urdf", "panda_link0", "panda_tool"),
+    (ROOT / "urdf/lwa3.urdf", "base_link", "tool"),
+    (ROOT / "tests/data/arm6.urdf", "foot", "tip"),
+    (ROOT / "tests/data/arm8.urdf", "mount", "flange"),
+]
+
+
+def chain(model, base, tip):
+    """Joints of Pinocchio that move the tip but not the base, base first."""
+    parent = lambda frame: model.frames[model.getFrameId(frame)].parentJoint
+    of_base = set(model.supports[parent(base)])
+    return [joint for joint in model.supports[parent(tip)] if joint not in of_base]
+
+
+def poses_of_pinocchio(model, base, tip, postures, joints):
+    """One row for each posture: x y z, then the rotation by rows."""
+    data, rows = model.createData(), []
+    for posture in postures:
+        q = pin.neutral(model)
+        for joint, angle in zip(joints, posture):
+            at = model.joints[joint].idx_q
+            # Pinocchio keeps a continuous joint as cosine and sine.
+            q[at:at + model.joints[joint].nq] = [angle] if model.joints[joint].nq == 1 else [np.cos(angle), np.sin(angle)]
+        pin.framesForwardKinematics(model, data, q)
+        pose = data.oMf[model.getFrameId(base)].inverse() * data.oMf[model.getFrameId(tip)]
+        rows.append([*pose.translation, *pose.rotation.ravel()])
+    return np.array(rows)
+
+
+def poses_of_arm_check(urdf, base, tip, postures):
+    text = "\n".join(" ".join(repr(float(angle)) for angle in posture) for posture in postures)
+    command = [ROOT / "build/arm-check", urdf, "--base", base, "--tip", tip, "--fk"]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=120)
+    if done.returncode:
+        sys.exit(done.stderr.strip())
+    return np.array([list(map(float, line.split())) for line in done.stdout.splitlines() if line[:1] in "-0123456789"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=1000, help="postures for each arm (default %(default)s)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tolerance", type=float, default=1e-9, help="m and without unit (default %(default)s)")
+    arguments = parser.parse_args()
+    random, failed = np.random.default_rng(arguments.seed), 0
+    for urdf, base, tip in ARMS:
+        model = pin.buildModelFromUrdf(str(urdf))
+        joints = chain(model, base, tip)
+        postures = random.uniform(-np.pi, np.pi, (arguments.count, len(joints)))
+        ours = poses_of_arm_check(urdf, base, tip, postures)
+        gap = np.abs(ours - poses_of_pinocchio(model, base, tip, postures, joints)).max()
+        right = len(ours) == arguments.count and gap <= arguments.tolerance
+        failed += not right
+        print(f"{'ok' if right else 'FAIL':4}  {urdf.name:12} {base} to {tip}, {len(joints)} joints, "
+              f"{arguments.count} postures: largest difference {gap:.1e}")
+    print(f"{len(ARMS) - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    os.chdir(ROOT)
+    main()
