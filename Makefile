@@ -64,17 +64,17 @@ $(READY): host/setup/debian.txt host/setup/python.txt
 	@host/setup/debian build
 	@test -x $(PYTHON) || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
 	@echo "set-up: Python packages of host/setup/python.txt"
-	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r host/setup/python.txt
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -r host/setup/python.txt
 	@touch $@
 
 $(READY).%: host/setup/debian.txt | $(READY)
 	@host/setup/debian $*
 	@touch $@
 
-$(WIRE): $(wildcard lcmtypes/*.lcm) | $(READY)
+$(WIRE): $(wildcard lcmtypes/*.lcm lcmtypes/drake/*.lcm) | $(READY)
 	@mkdir -p $(@D)
-	lcm-gen -x --cpp-hpath $(BUILD)/lcm lcmtypes/*.lcm
-	lcm-gen -p --ppath $(BUILD)/lcm/python lcmtypes/*.lcm
+	lcm-gen -x --cpp-hpath $(BUILD)/lcm $(filter %.lcm,$^)
+	lcm-gen -p --ppath $(BUILD)/lcm/python $(filter %.lcm,$^)
 	@touch $@
 
 $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)
