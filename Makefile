@@ -6,6 +6,7 @@ FAMILY   ?= all
 COUNT    ?= 500
 SEED     ?= 1
 LAW      ?= sidestep
+LOG      ?= $(BUILD)/runs/$(SCENARIO)-realtime.lcmlog
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
 .DEFAULT_GOAL := all
 
@@ -26,8 +27,11 @@ SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign
 LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
+LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
+VIEW     := $(READY).view $(BUILD)/.python-view
+SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
 
@@ -47,6 +51,22 @@ campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEE
 figures: all ## figures of the paper's three simulations, both laws, and the trade-off over the gains
 	@$(PYTHON) host/tools/figures.py
 
+##@ Looking
+
+view: all $(VIEW) ## SCENARIO live in the browser, again and again until Ctrl-C
+	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml
+
+view-test: all $(VIEW) ## the same in headless Chromium; examines a screenshot, build/figures/view.png
+	@$(PYTHON) tests/view/picture.py
+
+spy: $(BUILD)/types.jar ## lcm-spy with the types decoded
+	@java -cp $(SPY):$< lcm.spy.Spy
+
+report: all ## LOG (any lcm-logger log of a run; default: that of the last `make run`) as one page, build/report.html
+	@$(PYTHON) host/tools/report.py $(LOG) -o $(BUILD)/report.html
+
+##@ Checking
+
 lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
@@ -57,7 +77,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures lint clean help
+.PHONY: all run test campaign figures view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -71,10 +91,21 @@ $(READY).%: host/setup/debian.txt | $(READY)
 	@host/setup/debian $*
 	@touch $@
 
-$(WIRE): $(wildcard lcmtypes/*.lcm lcmtypes/drake/*.lcm) | $(READY)
+$(BUILD)/.python-view: host/setup/python-view.txt | $(READY)
+	@echo "set-up: Python packages of $<"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -r $<
+	@touch $@
+
+# Debian's lcm-spy script passes an option that its Java no longer knows.
+$(BUILD)/types.jar: $(WIRE) $(READY).spy
+	@rm -rf $(BUILD)/lcm/java && lcm-gen -j --jpath $(BUILD)/lcm/java $(LCM_TYPES)
+	@javac -nowarn -cp $(SPY) $$(find $(BUILD)/lcm/java -name '*.java')
+	@jar cf $@ -C $(BUILD)/lcm/java .
+
+$(WIRE): $(LCM_TYPES) | $(READY)
 	@mkdir -p $(@D)
-	lcm-gen -x --cpp-hpath $(BUILD)/lcm $(filter %.lcm,$^)
-	lcm-gen -p --ppath $(BUILD)/lcm/python $(filter %.lcm,$^)
+	lcm-gen -x --cpp-hpath $(BUILD)/lcm $(LCM_TYPES)
+	lcm-gen -p --ppath $(BUILD)/lcm/python $(LCM_TYPES)
 	@touch $@
 
 $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)

@@ -1,8 +1,12 @@
 """Where an arm's joints and link shapes are: the chain of a URDF, for drawing."""
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def vector(joint, tag, attribute, default=(0, 0, 0)):
@@ -117,3 +121,15 @@ def turn_of(quaternion):
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def robot_of(arguments):
+    """(URDF, base, tip): the configuration's, and over it what the arguments say."""
+    said = yaml.safe_load(arguments.config.read_text())["robot"]
+    return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
+
+
+def add_robot(parser):
+    parser.add_argument("--config", type=Path, default=ROOT / "firmware/config/lwa3.yaml", help="default: the LWA3's")
+    for name in ("urdf", "base", "tip"):
+        parser.add_argument(f"--{name}", help="over the configuration's")

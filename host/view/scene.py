@@ -12,7 +12,7 @@ from bus import obstacle_t
 from drake import lcmt_viewer_draw, lcmt_viewer_geometry_data as part_t, lcmt_viewer_link_data, lcmt_viewer_load_robot
 
 ARM_COLOURS = [(0.85, 0.1, 0.1), (0.95, 0.5, 0.1), (0.9, 0.8, 0.1), (0.2, 0.45, 0.85)]  # near to far
-COLOUR_ENDS_M = [0.03, 0.08, 0.15]
+COLOUR_ENDS_M = [0.05, 0.1, 0.2]
 OBSTACLE, TARGET, TRAIL = (0.7, 0.15, 0.65), (0.05, 0.65, 0.3), (0.1, 0.1, 0.1)
 ARROW_TIMES_S = [0.15, 0.3, 0.45]
 TRAIL_BEADS = 120

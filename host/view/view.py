@@ -12,7 +12,6 @@ from collections import deque
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "build/lcm/python"), str(ROOT / "host/tools")]
@@ -74,26 +73,14 @@ class View:
             self.draw()
 
 
-def robot_of(arguments):
-    """(URDF, base, tip): the configuration's, and over it what the arguments say."""
-    said = yaml.safe_load(arguments.config.read_text())["robot"]
-    return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
-
-
-def add_robot(parser):
-    parser.add_argument("--config", type=Path, default=ROOT / "firmware/config/lwa3.yaml", help="default: the LWA3's")
-    for name in ("urdf", "base", "tip"):
-        parser.add_argument(f"--{name}", help="over the configuration's")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    add_robot(parser)
+    arm.add_robot(parser)
     bus.add_lcm_url(parser)
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        View(robot_of(arguments), arguments.lcm_url).run()
+        View(arm.robot_of(arguments), arguments.lcm_url).run()
     except KeyboardInterrupt:
         pass
 

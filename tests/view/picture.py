@@ -18,9 +18,10 @@ import runs
 import show
 
 PORT = 7070
-CAMERA_M = [1.2, 1.1, 1.5]  # x, y up, z towards the viewer: the browser's axes
-LOOK_AT_M = [0.0, 0.6, 0.0]
-LEAST_PIXELS = {"arm": 1500, "obstacles": 500, "target": 40}
+FRAME = (300, 120, 760, 520)  # of the picture that is kept
+CAMERA_M = [0.75, 1.0, 1.2]  # x, y up, z towards the viewer: the browser's axes
+LOOK_AT_M = [0.05, 0.6, 0.0]
+LEAST_PIXELS = {"arm": 4000, "obstacles": 1500, "target": 60}
 HUES_DEG = {"arm": [(200, 230), (15, 65)], "obstacles": [(290, 325)], "target": [(135, 165)]}
 FLAGS = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--window-size=1000,800", "--hide-scrollbars"]
@@ -101,7 +102,7 @@ def main():
         finally:
             page.quit()
     output.parent.mkdir(parents=True, exist_ok=True)
-    image.save(output, optimize=True)
+    image.crop(FRAME).save(output, optimize=True)
     print(f"pixels before: {empty}; in {runs.shown(output.absolute())}: {counts}")
     seen = all(empty[what] < least <= counts[what] for what, least in LEAST_PIXELS.items())
     print("view: everything is in the picture" if seen else "view: something is missing, or was there before the run")
