@@ -71,7 +71,7 @@ lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
 clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a
+	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a $(BUILD)/*.jar
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \

@@ -91,6 +91,8 @@ def curves(rows, joints):
 
 
 def data_of(log, robot):
+    if not log.is_file():
+        raise NoRun(f"{log}: no such file")
     links, shapes = arm.chain(*robot), arm.shapes(*robot)
     joints = sum(axis is not None for _, _, axis in links)
     rows = [row for row in samples(log) if row[1]["ARM_STATE"].num_joints == joints]

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "build/lcm/python"), str(ROOT / "host/tools")]
+sys.path.insert(0, str(ROOT / "host/tools"))
 import arm
 import bus
 import scene
