@@ -10,7 +10,7 @@ namespace {
 void holds(const char* what) {
   Process python({"build/venv/bin/python", "tests/support/tools_check.py", what});
   const int code = python.wait(60.0);
-  sidestep::test::check(code == 0, "%s: %s", what, python.output().c_str());
+  check(code == 0, "%s: %s", what, python.output().c_str());
 }
 
 void what_is_sent_as_a_velocity_is_the_slope_of_the_position(void**) {
