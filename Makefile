@@ -6,6 +6,7 @@ FAMILY   ?= all
 COUNT    ?= 500
 SEED     ?= 1
 LAW      ?= sidestep
+LOG      ?= $(BUILD)/runs/$(SCENARIO)-realtime.lcmlog
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
 .DEFAULT_GOAL := all
 
@@ -35,8 +36,11 @@ FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
+LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
+VIEW     := $(READY).view $(BUILD)/.python-view
+SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
 
@@ -51,7 +55,7 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(READY).peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+peers-test: all $(BUILD)/.python-peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
 	@$(PYTHON) tests/peers/kinematics.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
@@ -77,39 +81,61 @@ timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and un
 soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
 	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
 
+##@ Looking
+
+view: all $(VIEW) ## SCENARIO live in the browser, again and again until Ctrl-C
+	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml
+
+view-test: all $(VIEW) ## the same in headless Chromium; examines a screenshot, build/figures/view.png
+	@$(PYTHON) tests/view/picture.py
+
+spy: $(BUILD)/types.jar ## lcm-spy with the types decoded
+	@java -cp $(SPY):$< lcm.spy.Spy
+
+report: all ## LOG (any lcm-logger log of a run; default: that of the last `make run`) as one page, build/report.html
+	@$(PYTHON) host/tools/report.py $(LOG) -o $(BUILD)/report.html
+
+##@ Checking
+
 lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
 clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a
+	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a $(BUILD)/*.jar
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test peers-test faults fuzz sanitize campaign figures timing soak lint clean help
+.PHONY: all run test peers-test faults fuzz sanitize campaign figures timing soak view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
 	@host/setup/debian build
 	@test -x $(PYTHON) || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
 	@echo "set-up: Python packages of host/setup/python.txt"
-	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r host/setup/python.txt
-	@touch $@
-
-$(READY).peers: host/setup/python-peers.txt | $(READY)
-	@echo "set-up: Python packages of $<"
-	@$(BUILD)/venv/bin/pip install -q --disable-pip-version-check -r $<
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -r host/setup/python.txt
 	@touch $@
 
 $(READY).%: host/setup/debian.txt | $(READY)
 	@host/setup/debian $*
 	@touch $@
 
-$(WIRE): $(wildcard lcmtypes/*.lcm) | $(READY)
+$(BUILD)/.python-%: host/setup/python-%.txt | $(READY)
+	@echo "set-up: Python packages of $<"
+	@$(PYTHON) -m pip install -q --disable-pip-version-check -r $<
+	@touch $@
+
+# Debian's lcm-spy script passes an option that its Java no longer knows.
+$(BUILD)/types.jar: $(WIRE) $(READY).spy
+	@rm -rf $(BUILD)/lcm/java && lcm-gen -j --jpath $(BUILD)/lcm/java $(LCM_TYPES)
+	@javac -nowarn -cp $(SPY) $$(find $(BUILD)/lcm/java -name '*.java')
+	@jar cf $@ -C $(BUILD)/lcm/java .
+
+$(WIRE): $(LCM_TYPES) | $(READY)
 	@mkdir -p $(@D)
-	lcm-gen -x --cpp-hpath $(BUILD)/lcm lcmtypes/*.lcm
-	lcm-gen -p --ppath $(BUILD)/lcm/python lcmtypes/*.lcm
+	lcm-gen -x --cpp-hpath $(BUILD)/lcm $(LCM_TYPES)
+	lcm-gen -p --ppath $(BUILD)/lcm/python $(LCM_TYPES)
 	@touch $@
 
 $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)

@@ -1,7 +1,12 @@
-"""Where an arm's joints are: the chain of a URDF, for drawing."""
+"""Where an arm's joints and link shapes are: the chain of a URDF, for drawing."""
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def vector(joint, tag, attribute, default=(0, 0, 0)):
@@ -21,26 +26,110 @@ def rotation_of(roll, pitch, yaw):
     return rotation_about(z, yaw) @ rotation_about(y, pitch) @ rotation_about(x, roll)
 
 
+class Shape(NamedTuple):
+    """A collision shape at a place in the frame of a link."""
+    link: str
+    frame: int          # of the link in frames()
+    kind: str           # sphere, cylinder, capsule or box
+    size: tuple         # m: (radius), (radius, length along z) or the edges
+    place: np.ndarray   # 3
+    turn: np.ndarray    # 3x3
+
+
+def path(urdf, base, tip):
+    """The joint elements from base to tip, and the link elements by name."""
+    robot = ElementTree.parse(urdf).getroot()
+    parents = {joint.find("child").get("link"): joint for joint in robot.findall("joint")}
+    joints, link = [], tip
+    while link != base:
+        if link not in parents:
+            raise ValueError(f"{urdf}: no chain from {base} to {tip}")
+        joints.insert(0, parents[link])
+        link = parents[link].find("parent").get("link")
+    return joints, {link.get("name"): link for link in robot.findall("link")}
+
+
 def chain(urdf, base, tip):
     """(offset 3, rotation 3x3, axis or None if fixed) of every joint from base to tip."""
-    joints = {joint.find("child").get("link"): joint for joint in ElementTree.parse(urdf).getroot().findall("joint")}
-    links, link = [], tip
-    while link != base:
-        if link not in joints:
-            raise ValueError(f"{urdf}: no chain from {base} to {tip}")
-        joint = joints[link]
-        moves = joint.get("type") in ("revolute", "continuous")
-        links.insert(0, (vector(joint, "origin", "xyz"), rotation_of(*vector(joint, "origin", "rpy")),
-                         vector(joint, "axis", "xyz", (1, 0, 0)) if moves else None))
-        link = joint.find("parent").get("link")
-    return links
+    return [(vector(joint, "origin", "xyz"), rotation_of(*vector(joint, "origin", "rpy")),
+             vector(joint, "axis", "xyz", (1, 0, 0)) if joint.get("type") in ("revolute", "continuous") else None)
+            for joint in path(urdf, base, tip)[0]]
+
+
+def frames(links, q_rad):
+    """(place 3, turn 3x3) in the base frame: of the base, then of every joint's child, and so of the tip."""
+    place, turn, angles = np.zeros(3), np.eye(3), iter(q_rad)
+    placed = [(place, turn)]
+    for offset, rotation, axis in links:
+        place = place + turn @ offset
+        turn = turn @ rotation @ (np.eye(3) if axis is None else rotation_about(axis, next(angles)))
+        placed.append((place, turn))
+    return placed
 
 
 def joint_points(links, q_rad):
     """N x 3: the base, every joint's origin, and so the tip, m, in the base frame."""
-    place, turn, points, angles = np.zeros(3), np.eye(3), [np.zeros(3)], iter(q_rad)
-    for offset, rotation, axis in links:
-        place = place + turn @ offset
-        turn = turn @ rotation @ (np.eye(3) if axis is None else rotation_about(axis, next(angles)))
-        points.append(place)
-    return np.array(points)
+    return np.array([place for place, _ in frames(links, q_rad)])
+
+
+def size_of(geometry):
+    kind = geometry[0].tag
+    if kind == "box":
+        return kind, tuple(map(float, geometry[0].get("size").split()))
+    return kind, tuple(float(geometry[0].get(key)) for key in ("radius", "length") if geometry[0].get(key))
+
+
+def shapes(urdf, base, tip):
+    """The collision shapes of the chain's links; rods from joint to joint where all that there is are meshes."""
+    joints, links = path(urdf, base, tip)
+    found = []
+    for frame, name in enumerate([base, *(joint.find("child").get("link") for joint in joints)]):
+        for collision in links[name].findall("collision"):
+            if collision.find("geometry")[0].tag != "mesh":
+                found.append(Shape(name, frame, *size_of(collision.find("geometry")),
+                                   vector(collision, "origin", "xyz"), rotation_of(*vector(collision, "origin", "rpy"))))
+    return found or [rod(joint.find("parent").get("link"), frame, vector(joint, "origin", "xyz"))
+                     for frame, joint in enumerate(joints) if vector(joint, "origin", "xyz").any()]
+
+
+def rod(link, frame, to, radius_m=0.03):
+    return Shape(link, frame, "capsule", (radius_m, float(np.linalg.norm(to))), to / 2, turn_of_z(to))
+
+
+def turn_of_z(direction):
+    """3x3: a rotation that takes z into the direction."""
+    z = direction / np.linalg.norm(direction)
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
+def quaternion_of(turn):
+    """w x y z of a 3x3 rotation: the eigenvector of its largest eigenvalue (Bar-Itzhack)."""
+    (a, b, c), (d, e, f), (g, h, i) = turn
+    _, vectors = np.linalg.eigh([[a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g],
+                                 [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]])
+    return vectors[:, -1]
+
+
+def turn_of(quaternion):
+    """3x3 of w x y z; the identity where it is zero, as a sphere's may be."""
+    norm = np.linalg.norm(quaternion)
+    if norm == 0:
+        return np.eye(3)
+    w, x, y, z = np.asarray(quaternion) / norm
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def robot_of(arguments):
+    """(URDF, base, tip): the configuration's, and over it what the arguments say."""
+    said = yaml.safe_load(arguments.config.read_text())["robot"]
+    return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
+
+
+def add_robot(parser):
+    parser.add_argument("--config", type=Path, default=ROOT / "firmware/config/lwa3.yaml", help="default: the LWA3's")
+    for name in ("urdf", "base", "tip"):
+        parser.add_argument(f"--{name}", help="over the configuration's")

@@ -47,7 +47,8 @@ def main():
     scenario, name = runs.load_scenario(scenario_file), scenario_file.stem
 
     print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time", flush=True)
-    code = runs.execute(scenario_file, "sidestep", runs.RECORDS / f"{name}-realtime.csv", lockstep=False)
+    record = runs.RECORDS / f"{name}-realtime.csv"
+    code = runs.execute(scenario_file, "sidestep", record, lockstep=False, log=record.with_suffix(".lcmlog"))
     both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
                                                 for law in runs.LAWS])
     print(f"\nBoth laws, in lockstep:\n{table(*both)}\n", flush=True)

@@ -120,10 +120,10 @@ def wait(sim, controller, limit_s):
         time.sleep(0.005)
 
 
-def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True):
+def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
-    In real time (not lockstep) the simulator writes to this terminal. RunFailed when either process fails.
+    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when either process fails.
     """
     scenario = load_scenario(scenario_file)
     record.parent.mkdir(parents=True, exist_ok=True)
@@ -134,7 +134,8 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True):
         try:
             processes["controller"] = start([BUILD / "controller", "--config", config or config_of(scenario), "--law",
                                              law, *common], controller_log)
-            processes["sim"] = start([BUILD / "sim", "--scenario", scenario_file, "--csv", record, *common],
+            processes["sim"] = start([BUILD / "sim", "--scenario", scenario_file, "--csv", record,
+                                      *(["--log", log] if log else []), *common],
                                      sim_log if lockstep else None)
             wait(processes["sim"], processes["controller"], scenario["duration_s"] * (10 if lockstep else 1) + 60)
             lost = processes["controller"].poll()

@@ -1,33 +1,24 @@
 #!/usr/bin/env python3
-"""Publish spheres on OBSTACLES, 50 times a second, moving with their velocity until Ctrl-C.
+"""Publish obstacles on OBSTACLES, 50 times a second, until Ctrl-C.
 
-The message is always the full set: what is not in it is gone. No sphere at all sends the empty set.
+Spheres that move with their velocity, or a crowd: from a CSV file, random, or a walking person. The message is always
+the full set: what is not in it is gone. No obstacle at all sends the empty set.
 """
 import argparse
-import sys
 import time
-from pathlib import Path
 
 import lcm
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
-from sidestep import obstacle_t, obstacles_t
+import crowds
+from crowds import obstacles_t
 
 
-def sphere(number, x, y, z, radius, vx=0.0, vy=0.0, vz=0.0):
-    obstacle = obstacle_t()
-    obstacle.id, obstacle.shape, obstacle.size = number, obstacle_t.SPHERE, [radius, 0, 0]
-    obstacle.position, obstacle.velocity = [x, y, z], [vx, vy, vz]
-    return obstacle
-
-
-def send(spheres, lcm_url):
+def send(crowd, lcm_url):
+    """crowd: seconds since the start -> the obstacles."""
     wire, message, start = lcm.LCM(lcm_url), obstacles_t(), time.time()
     while True:
-        now = time.time()
-        message.utime = int(now * 1e6)
-        message.obstacles = [sphere(i, *(p + v * (now - start) for p, v in zip(s, s[4:])), *s[3:])
-                             for i, s in enumerate(spheres)]
+        message.utime = int(time.time() * 1e6)
+        message.obstacles = crowd(time.time() - start)
         message.num_obstacles = len(message.obstacles)
         wire.publish("OBSTACLES", message.encode())
         time.sleep(0.02)
@@ -36,20 +27,35 @@ def send(spheres, lcm_url):
 def numbers(text):
     values = [float(number) for number in text.split(",")]
     if len(values) not in (4, 7):
-        raise ValueError
+        raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
     return values + [0.0] * (7 - len(values))
+
+
+def crowd_of(arguments, spheres):
+    if arguments.csv:
+        return crowds.from_csv(arguments.csv)
+    if arguments.random:
+        return crowds.wandering(arguments.random, arguments.seed)
+    return crowds.walking() if arguments.person else crowds.straight([numbers(text) for text in spheres])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     usage="%(prog)s [-h] [--lcm-url URL] [x,y,z,radius[,vx,vy,vz] ...]",
+                                     usage="%(prog)s [-h] [options] [x,y,z,radius[,vx,vy,vz] ...]",
                                      epilog="Centre and radius in m, velocity in m/s (default 0).")
-    parser.add_argument("--lcm-url", default="", metavar="URL", help="default: LCM's own")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--csv", metavar="FILE", help="spheres by columns t_s, id, x_m, y_m, z_m, radius_m")
+    kind.add_argument("--random", type=int, metavar="N", help="N spheres that wander around the arm")
+    kind.add_argument("--person", action="store_true", help="somebody who walks past the arm, to and fro, as capsules")
+    parser.add_argument("--seed", type=int, default=1, help="of the random ones (default %(default)s)")
+    parser.add_argument("--lcm-url", default="", metavar="URL", help="default: LCM_DEFAULT_URL or LCM's own")
     arguments, spheres = parser.parse_known_args()  # so that a sphere may begin with a minus
     try:
-        send([numbers(text) for text in spheres], arguments.lcm_url)
-    except ValueError:
-        parser.error("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
+        crowd = crowd_of(arguments, spheres)
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        parser.error(str(error))
+    try:
+        send(crowd, arguments.lcm_url)
     except KeyboardInterrupt:
         pass
 

@@ -1,0 +1,48 @@
+"""Sidestep's channels for the scripts: their types, and what was last heard on each."""
+import select
+import struct
+import sys
+import time
+from pathlib import Path
+
+import lcm
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "build/lcm/python"))  # behind pydrake, which has types of its own
+from sidestep import controller_status_t, joint_command_t, joint_state_t, obstacle_t, obstacles_t, target_t
+
+TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,
+         "CONTROLLER_STATUS": controller_status_t}
+MODES = {getattr(controller_status_t, name): name for name in ("WAIT", "HOLD", "TRACK", "BRAKE", "FAULT")}
+
+
+def decoded(channel, data):
+    """The message, or None when the bytes are not one of this channel's type."""
+    try:
+        return TYPES[channel].decode(data)
+    except (ValueError, struct.error, UnicodeDecodeError, MemoryError):
+        return None
+
+
+class Newest(dict):
+    """channel -> the newest message; a channel is missing until something was heard."""
+
+    def __init__(self, channels, lcm_url):
+        super().__init__()
+        self.wire = lcm.LCM(lcm_url)
+        for channel in channels:
+            self.wire.subscribe(channel, self._take)
+
+    def _take(self, channel, data):
+        if (message := decoded(channel, data)) is not None:
+            self[channel] = message
+
+    def listen(self, duration_s):
+        end = time.monotonic() + duration_s
+        while (left_s := end - time.monotonic()) > 0:
+            if select.select([self.wire], [], [], left_s)[0]:  # waits where Ctrl-C is heard
+                self.wire.handle()
+
+
+def add_lcm_url(parser):
+    parser.add_argument("--lcm-url", default="", metavar="URL", help="default: LCM_DEFAULT_URL or LCM's own")

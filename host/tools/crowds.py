@@ -1,0 +1,84 @@
+"""Moving obstacles to send: each crowd is a function from seconds since its start to a list of obstacle_t."""
+import csv
+import math
+import random
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
+from sidestep import obstacle_t, obstacles_t
+
+
+def obstacle(number, shape, size, position, velocity, about_y=(0.0, 0.0)):
+    """about_y: how far it is turned about y, rad, and how fast, rad/s."""
+    made = obstacle_t()
+    made.id, made.shape, made.size = number, shape, [*size, 0.0, 0.0][:3]
+    made.position, made.velocity = list(position), list(velocity)
+    made.quaternion = [math.cos(about_y[0] / 2), 0.0, math.sin(about_y[0] / 2), 0.0]
+    made.angular_velocity = [0.0, about_y[1], 0.0]
+    return made
+
+
+def sphere(number, x, y, z, radius, vx=0.0, vy=0.0, vz=0.0):
+    return obstacle(number, obstacle_t.SPHERE, [radius], [x, y, z], [vx, vy, vz])
+
+
+def straight(spheres):
+    """Seven numbers each: centre, radius, velocity."""
+    return lambda t: [sphere(i, *(p + v * t for p, v in zip(s, s[4:])), *s[3:]) for i, s in enumerate(spheres)]
+
+
+def wandering(count, seed):
+    """Spheres of 5 cm that swing about random places around the arm, at most at about 0.4 m/s along an axis."""
+    chance = random.Random(seed)
+    swings = [[(chance.uniform(*where), chance.uniform(0.1, 0.3), chance.uniform(0.3, 1.3), chance.uniform(0, 6.28))
+               for where in ((-0.9, 0.9), (-0.9, 0.9), (0.4, 1.2))] for _ in range(count)]
+
+    def at(t):
+        return [sphere(i, *(c + a * math.sin(w * t + p) for c, a, w, p in swing), 0.05,
+                       *(a * w * math.cos(w * t + p) for c, a, w, p in swing)) for i, swing in enumerate(swings)]
+    return at
+
+
+def from_csv(file):
+    """Columns t_s, id, x_m, y_m, z_m, radius_m: spheres on straight lines from row to row, at rest after the last."""
+    tracks = {}
+    with open(file, newline="") as stream:
+        for row in csv.DictReader(stream):
+            t_s, *place = (float(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
+            tracks.setdefault(int(row["id"]), []).append((t_s, place))
+    tracks = {number: sorted(track) for number, track in tracks.items()}
+    return lambda t: [sphere(number, *on_track(track, t)) for number, track in tracks.items()]
+
+
+def on_track(track, t):
+    """Centre, radius and velocity."""
+    for (t0, a), (t1, b) in zip(track, track[1:]):
+        if t0 <= t < t1:
+            share = (t - t0) / (t1 - t0)
+            return *(p + share * (q - p) for p, q in zip(a, b)), *((q - p) / (t1 - t0) for p, q in zip(a[:3], b))
+    return *(track[0] if t < track[0][0] else track[-1])[1], 0.0, 0.0, 0.0
+
+
+# A person by limb: radius m, length between the cap centres m, upper end (sideways, up) m, swing rad.
+LIMBS = [(0.15, 0.40, 0.00, 1.35, 0.0), (0.07, 0.75, 0.10, 0.85, 0.45), (0.07, 0.75, -0.10, 0.85, -0.45),
+         (0.05, 0.50, 0.23, 1.35, -0.5), (0.05, 0.50, -0.23, 1.35, 0.5)]
+HEAD_M, HEAD_UP_M = 0.12, 1.62
+STEPS_RADPS, WAY_RADPS = 5.0, 0.5
+
+
+def walking(y_m=0.9, reach_m=1.2):
+    """A person who walks along x beside the arm, to and fro, swinging arms and legs: five capsules and a head."""
+    def at(t):
+        x, vx = reach_m * math.sin(WAY_RADPS * t), reach_m * WAY_RADPS * math.cos(WAY_RADPS * t)
+        return [limb(i, x, vx, y_m, t, *one) for i, one in enumerate(LIMBS)] + \
+               [sphere(len(LIMBS), x, y_m, HEAD_UP_M, HEAD_M, vx)]
+    return at
+
+
+def limb(number, x, vx, y, t, radius, length, side, up, swing):
+    angle, rate = swing * math.sin(STEPS_RADPS * t), swing * STEPS_RADPS * math.cos(STEPS_RADPS * t)
+    half = length / 2
+    place = [x - half * math.sin(angle), y + side, up - half * math.cos(angle)]
+    velocity = [vx - half * rate * math.cos(angle), 0.0, half * rate * math.sin(angle)]
+    return obstacle(number, obstacle_t.CAPSULE, [radius, length], place, velocity, (angle, rate))

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""Write what is said on Sidestep's channels into an lcm log until Ctrl-C; report.py and lcm-logplayer read it."""
+import argparse
+import select
+import signal
+import time
+
+import lcm
+
+import bus
+
+
+def record(file, channels, lcm_url):
+    """Returns the number of messages written."""
+    wire, log, written = lcm.LCM(lcm_url), lcm.EventLog(file, "w", overwrite=True), 0
+
+    def keep(channel, data):
+        nonlocal written
+        log.write_event(int(time.time() * 1e6), channel, data)
+        written += 1
+
+    for channel in channels:
+        wire.subscribe(channel, keep).set_queue_capacity(1000)
+    try:
+        while True:
+            select.select([wire], [], [])  # waits where Ctrl-C is heard
+            wire.handle()
+    except KeyboardInterrupt:
+        log.close()
+    return written
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("log", metavar="LOG", help="the file to write; an old one is replaced")
+    parser.add_argument("--channels", nargs="+", default=list(bus.TYPES), metavar="NAME", help="default: %(default)s")
+    bus.add_lcm_url(parser)
+    arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    print(f"{record(arguments.log, arguments.channels, arguments.lcm_url)} messages in {arguments.log}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+// The scripts in host/tools.
+
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+
+using sidestep::test::Process;
+
+namespace {
+
+void holds(const char* what) {
+  Process python({"build/venv/bin/python", "tests/support/tools_check.py", what});
+  const int code = python.wait(60.0);
+  check(code == 0, "%s: %s", what, python.output().c_str());
+}
+
+void what_is_sent_as_a_velocity_is_the_slope_of_the_position(void**) {
+  holds("velocities");
+}
+void spheres_of_a_csv_file_run_from_row_to_row(void**) {
+  holds("tracks");
+}
+void a_drawing_is_coloured_by_the_true_clearance(void**) {
+  holds("clearances");
+}
+void a_rotation_survives_the_way_to_a_quaternion(void**) {
+  holds("quaternions");
+}
+void a_log_becomes_one_page_that_needs_no_network(void**) {
+  holds("log_becomes_page");
+}
+void a_log_replays_with_lcm_logplayer(void**) {
+  holds("log_replays");
+}
+void hostile_bytes_are_no_message(void**) {
+  holds("hostile_bytes");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(what_is_sent_as_a_velocity_is_the_slope_of_the_position,
+                                sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(spheres_of_a_csv_file_run_from_row_to_row, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_drawing_is_coloured_by_the_true_clearance, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_rotation_survives_the_way_to_a_quaternion, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(hostile_bytes_are_no_message, sidestep::test::kill_processes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Checks of the scripts in host/tools; a wrong one ends with an assertion."""
+import argparse
+import math
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "host/tools"), str(ROOT / "host/view"), str(ROOT / "build/lcm/python")]
+import arm
+import bus
+import crowds
+import geometry
+import report
+import runs
+import send_target
+
+STEP_S = 1e-4
+LWA3 = (ROOT / "urdf/lwa3.urdf", "base_link", "tool")
+
+
+def slope(place_at, t):
+    return (np.array(place_at(t + STEP_S)) - np.array(place_at(t - STEP_S))) / (2 * STEP_S)
+
+
+def velocities():
+    """What is sent as a velocity is the slope of what is sent as a position, for targets and obstacles."""
+    moves = [send_target.line([0, 1, 2], [0.1, -0.2, 0.3]), send_target.circle([0, 0, 1], 0.3, 5),
+             send_target.figure_eight([0, 0, 1], 0.3, 5)]
+    for move in moves:
+        for t in (0.0, 1.3, 4.9):
+            assert np.allclose(slope(lambda s: move(s)[0], t), move(t)[1], atol=1e-6), (move, t)
+    crowd_kinds = [crowds.straight([[0, 0, 0, 0.1, 1, 2, 3]]), crowds.wandering(4, 7), crowds.walking()]
+    for crowd in crowd_kinds:
+        for i, obstacle in enumerate(crowd(1.7)):
+            assert np.allclose(slope(lambda s: crowd(s)[i].position, 1.7), obstacle.velocity, atol=1e-6), (crowd, i)
+            turns = [arm.turn_of(crowd(1.7 + side * STEP_S)[i].quaternion)[:, 2] for side in (-1, 1)]
+            now = arm.turn_of(obstacle.quaternion)[:, 2]
+            assert np.allclose((turns[1] - turns[0]) / (2 * STEP_S), np.cross(obstacle.angular_velocity, now), atol=1e-6)
+
+
+def tracks():
+    """Spheres from a CSV file run straight from row to row and then rest."""
+    with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+        file.write("t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,0.1\n2,4,0.9,0,0,0.1\n")
+        file.flush()
+        crowd = crowds.from_csv(file.name)
+    for t, x, vx in ((0, 0.5, 0.2), (1, 0.7, 0.2), (5, 0.9, 0)):
+        (sphere,) = crowd(t)
+        assert np.allclose([*sphere.position, *sphere.velocity], [x, 0, 0, vx, 0, 0]) and sphere.id == 4
+
+
+def clearances():
+    """A drawing's clearance is that of the LWA3 stretched upwards beside a sphere, a capsule and a box."""
+    frames = arm.frames(arm.chain(*LWA3), [0.0] * 7)
+    shapes = arm.shapes(*LWA3)
+    thing = crowds.obstacle
+    for shape, size, expected in ((0, [0.1], 0.35), (1, [0.1, 1.0], 0.35), (2, [0.4, 0.4, 2.0], 0.25)):
+        obstacle = thing(1, shape, size, [0.5, 0, 0.5], [0, 0, 0])
+        nearest = min(geometry.clearance_m(one, frames[one.frame], [obstacle]) for one in shapes)
+        assert math.isclose(nearest, expected, abs_tol=5e-3), (shape, nearest)
+
+
+def quaternions():
+    """A rotation survives the way to a quaternion and back."""
+    chance = np.random.default_rng(1)
+    for _ in range(100):
+        turn = arm.turn_of(chance.normal(size=4))
+        assert np.allclose(arm.turn_of(arm.quaternion_of(turn)), turn)
+
+
+def logged_run(folder):
+    """The log that the simulator keeps of a lockstep run of paper-a, and how long the run was."""
+    log, scenario_file = folder / "run.lcmlog", ROOT / "host/scenarios/paper-a.yaml"
+    runs.execute(scenario_file, "sidestep", folder / "run.csv", lcm_url=runs.private_url(), log=log)
+    return log, runs.load_scenario(scenario_file)["duration_s"]
+
+
+def log_becomes_page():
+    """A log turns into one page that holds the run and asks the network for nothing."""
+    with tempfile.TemporaryDirectory() as name:
+        log, duration_s = logged_run(Path(name))
+        data = report.data_of(log, LWA3)
+        page = report.page(data)
+    assert duration_s <= data["t"][-1] <= duration_s + 1.5, data["t"][-1]
+    assert len(data["curves"][2][1]) == 7 and data["curves"][0][1]["distance"][-1] < 0.01
+    assert "/*DATA*/" not in page and not re.search(r"https?://|src=|href=", page)
+
+
+def log_replays():
+    """What lcm-logplayer plays of a log, record.py hears: the same messages."""
+    url = runs.private_url()
+    with tempfile.TemporaryDirectory() as name:
+        log, _ = logged_run(Path(name))
+        again = Path(name) / "again.lcmlog"
+        recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", again, "--lcm-url", url],
+                                    stdout=subprocess.DEVNULL)
+        time.sleep(1.0)
+        subprocess.run(["lcm-logplayer", "--lcm-url", url, log], check=True, timeout=60, stdout=subprocess.DEVNULL)
+        time.sleep(0.5)
+        recorder.send_signal(signal.SIGINT)
+        assert recorder.wait(10) == 0
+        played, heard = ([rows for _, rows in report.samples(file)] for file in (log, again))
+    assert len(heard) > 0.95 * len(played), (len(heard), len(played))
+    assert heard[-1]["ARM_STATE"].joint_position == played[-1]["ARM_STATE"].joint_position
+
+
+def hostile_bytes():
+    """What is not a message of its channel is nothing, whatever it is."""
+    chance = random.Random(1)
+    for channel, kind in bus.TYPES.items():
+        whole = kind().encode()
+        for data in (b"", whole[:-1], b"\0" * 40, whole[:8] + chance.randbytes(60)):
+            bus.decoded(channel, data)
+        assert bus.decoded(channel, whole) is not None
+
+
+CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, log_becomes_page,
+                                              log_replays, hostile_bytes)}
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("check", choices=CHECKS)
+    CHECKS[parser.parse_args().check]()

@@ -1,0 +1,18 @@
+#include <drake/lcmt_viewer_draw.hpp>
+#include <drake/lcmt_viewer_load_robot.hpp>
+
+#include "tests/support/check.h"
+
+namespace {
+
+void the_viewers_layouts_are_those_of_drake(void**) {
+  assert_true(static_cast<uint64_t>(drake::lcmt_viewer_load_robot::getHash()) == 0x8987209b10aa2d39);
+  assert_true(static_cast<uint64_t>(drake::lcmt_viewer_draw::getHash()) == 0x414f0bfe5b2f4244);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {cmocka_unit_test(the_viewers_layouts_are_those_of_drake)};
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
