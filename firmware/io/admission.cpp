@@ -56,6 +56,11 @@ Capsule enclose(const obstacle_t& obstacle) {
   return {centre + rotation * local.start, centre + rotation * local.end, local.radius_m};
 }
 
+/// The paper's law is the paper's law and nothing more: it takes obstacles to be where they are said to be.
+double old_place_s(const Settings& settings) {
+  return settings.law == Law::kPaper ? 0.0 : settings.ages.old_place_s;
+}
+
 }  // namespace
 
 /// Decoded messages whose vectors keep their capacity from one message to the next.
@@ -70,7 +75,7 @@ Admission::Admission(int joints, const Settings& settings, bool arm_is_clock)
     : joints_(joints),
       ages_(settings.ages),
       arm_is_clock_(arm_is_clock),
-      scratch_(new Scratch{{}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, settings.ages.old_place_s)}) {
+      scratch_(new Scratch{{}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, old_place_s(settings))}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 

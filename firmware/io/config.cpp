@@ -155,8 +155,11 @@ void read_blackbox(Section section, BlackboxSettings& blackbox) {
 
 void read_foresight(Section section, ForesightSettings& foresight) {
   section.flag("enabled", foresight.enabled);
-  section.positive("horizon_s", foresight.horizon_s);
+  section.number("horizon_s", foresight.horizon_s, 0.5, 20.0);
   section.not_negative("clearance_m", foresight.clearance_m);
+  double seed = static_cast<double>(foresight.seed);
+  section.number("seed", seed, 0.0, 1e9);
+  foresight.seed = static_cast<int64_t>(seed);
   section.finish();
 }
 
