@@ -30,7 +30,10 @@ class Relay {
       : from_(from), to_(to), mischief_(std::move(mischief)) {
     if (!from_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", from));
     if (!to_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", to));
-    from_.subscribe(".*", &Relay::take, this)->setQueueCapacity(20000);
+    // The C++ binding does not say when this fails, for example because another program has the port.
+    lcm_subscription_t* all = lcm_subscribe(from_.getUnderlyingLCM(), ".*", take, this);
+    if (!all) throw std::runtime_error(fmt::format("LCM: cannot listen on the network '{}'", from));
+    lcm_subscription_set_queue_capacity(all, 20000);
   }
 
   Counts run() {
@@ -43,7 +46,11 @@ class Relay {
   }
 
  private:
-  void take(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  static void take(const lcm_recv_buf_t* buffer, const char* channel, void* relay) {
+    static_cast<Relay*>(relay)->pass(buffer, channel);
+  }
+
+  void pass(const lcm_recv_buf_t* buffer, const std::string& channel) {
     const auto* bytes = static_cast<const uint8_t*>(buffer->data);
     const double now_s = monotonic_s();
     for (Delivery& delivery : mischief_.deliver(channel, {bytes, bytes + buffer->data_size}, now_s)) {

@@ -9,8 +9,9 @@
 namespace sidestep::test {
 
 std::string private_lcm_url(int number) {
-  return "udpm://239.255.76." + std::to_string(67 + number) + ":" +
-         std::to_string(20000 + 2 * (getpid() % 20000) + number) + "?ttl=0";
+  // Below the ports that the system gives to sockets of its choice: those cannot be shared.
+  const int port = 10000 + 2 * (getpid() % 11000) + number;
+  return "udpm://239.255.76." + std::to_string(67 + number) + ":" + std::to_string(port) + "?ttl=0";
 }
 
 LcmPeer::LcmPeer() : lcm_(private_lcm_url()) {
