@@ -72,7 +72,7 @@ all: $(PROGRAMS) ## set up what is missing and build the programs
 campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
-figures: all ## figures of the paper's three simulations, both laws, and the trade-off over the gains
+figures: all ## figures of all scenarios of one arm, both laws, and the trade-off over the paper's gains
 	@$(PYTHON) host/tools/figures.py
 
 timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and under CPU stress, SECONDS (30) each

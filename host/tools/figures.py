@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Figures of the paper's three simulations under both laws, and the trade-off over the paper's gains."""
+"""Figures of the scenarios under both laws, and the trade-off over the paper's gains."""
 import argparse
 from pathlib import Path
 
@@ -7,7 +7,8 @@ import plots
 import runs
 import tradeoff
 
-SCENARIOS = runs.ROOT / "host/scenarios"
+SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in (
+    "paper-a", "paper-b", "paper-c", "parked-obstacle", "closing-gap", "pillar", "two-people", "moving-shelf")]
 
 
 def draw(scenario_file):
@@ -24,7 +25,7 @@ def main():
     parser.add_argument("--scenario", type=Path, action="append", metavar="FILE",
                         help="draw this scenario instead, without the trade-off (may be repeated)")
     chosen = parser.parse_args().scenario
-    for scenario_file in chosen or [SCENARIOS / f"paper-{letter}.yaml" for letter in "abc"]:
+    for scenario_file in chosen or SCENARIOS:
         for file in draw(scenario_file.absolute()):
             print(f"wrote {runs.shown(file)}", flush=True)
     if not chosen:

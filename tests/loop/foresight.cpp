@@ -1,0 +1,167 @@
+#include "firmware/foresight/foresight.h"
+
+#include <cstring>
+
+#include "firmware/model/prediction.h"
+#include "tests/support/allocation_count.h"
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+
+using namespace sidestep;
+using test::ClosedLoop;
+
+namespace {
+
+/// The closed loop with somebody who looks ahead; think() runs within the cycle, as in lockstep.
+struct Foreseeing {
+  ClosedLoop loop;
+  std::unique_ptr<Foresight> foresight;
+  std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();
+  const Guide* guide = nullptr;
+  double least_m = 1.0;
+
+  Foreseeing(const Vector3& target_m, bool foresees) : loop(test::lwa3_model("sidestep"), test::home_rad()) {
+    loop.model.settings.foresight.enabled = foresees;
+    loop.target.position_m = target_m;
+    loop.target_speaks = true;
+    if (foresees) foresight = std::make_unique<Foresight>(loop.model);
+  }
+
+  void cycle() {
+    Inputs inputs = loop.receive();
+    inputs.guide = guide;
+    const Result result = step(loop.model, loop.state, inputs, loop.now_s());
+    loop.follow(result);
+    if (foresight) {
+      look(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
+      guide = &foresight->think(*snapshot);
+    }
+    const Posture posture = forward(loop.model.arm, loop.arm.position_rad);
+    least_m = std::min(least_m, clearance_after(loop.model.arm, posture, loop.obstacles->obstacles.data(),
+                                                loop.obstacles->count, 0.0, 1.0));
+  }
+  void run(double duration_s) {
+    for (int i = 0; i < std::lround(duration_s * 100); ++i) cycle();
+  }
+  double error_m() const {
+    return (forward(loop.model.arm, loop.arm.position_rad).tool_position - loop.target.position_m).norm();
+  }
+  /// Two posts on the straight way of the forearm, and a bar between them.
+  void put_in_the_way() {
+    for (int i = 0; i < 9; ++i) loop.add_sphere(Vector3(0.32, -0.28 + 0.07 * i, 0.72), Vector3::Zero(), 0.07);
+    for (int i = 0; i < 5; ++i) loop.add_sphere(Vector3(0.32, 0.0, 0.44 + 0.07 * i), Vector3::Zero(), 0.07);
+  }
+};
+
+const Vector3 kBehindTheBar(0.62, 0.0, 0.62);
+
+void with_a_bar_in_the_straight_way_the_arm_arrives_by_foresight_alone(void**) {
+  double error_m[2];
+  for (const bool foresees : {false, true}) {
+    Foreseeing world(kBehindTheBar, foresees);
+    world.put_in_the_way();
+    world.run(12.0);
+    error_m[foresees] = world.error_m();
+    check(world.least_m > 0.01, "foresight %d: %g m", foresees, world.least_m);
+    test::check_stream(world.loop);
+  }
+  check(error_m[1] < 0.01, "with foresight %g m from the target", error_m[1]);
+  check(error_m[0] > 0.05, "without foresight %g m: the bar is not in the way", error_m[0]);
+}
+
+void where_the_law_will_do_there_is_no_guide(void**) {
+  Foreseeing world(Vector3(-0.328, 0.15, 0.8), true);
+  for (int i = 0; i < 400; ++i) {
+    world.cycle();
+    check(!world.guide || world.guide->knots == 0, "a guide at cycle %d", i);
+    assert_int_equal(static_cast<int>(world.loop.last.report.outlook), static_cast<int>(Outlook::kDirect));
+  }
+  check(world.error_m() < 1e-3, "%g m", world.error_m());
+}
+
+void the_same_world_gives_the_same_guides(void**) {
+  Foreseeing one(kBehindTheBar, true), other(kBehindTheBar, true);
+  one.put_in_the_way();
+  other.put_in_the_way();
+  int guided = 0;
+  for (int i = 0; i < 500; ++i) {
+    one.cycle();
+    other.cycle();
+    assert_int_equal(one.guide->knots, other.guide->knots);
+    for (int k = 0; k < one.guide->knots; ++k) {
+      const auto at = static_cast<size_t>(k);
+      assert_true(one.guide->time_s[at] == other.guide->time_s[at]);
+      assert_true(one.guide->position_rad[at] == other.guide->position_rad[at]);
+    }
+    if (one.guide->knots > 0) ++guided;
+  }
+  check(guided > 20, "only %d cycles with a guide", guided);
+}
+
+void guides_keep_the_limits_of_the_joints(void**) {
+  Foreseeing world(kBehindTheBar, true);
+  world.put_in_the_way();
+  const JointLimits& limits = world.loop.model.arm.limits;
+  int points = 0;
+  for (int i = 0; i < 700; ++i) {
+    world.cycle();
+    if (world.guide->knots == 0) continue;
+    for (double at_s = world.guide->time_s[0]; at_s < world.guide->end_s(); at_s += 0.1) {
+      const GuidePoint point = point_of(*world.guide, at_s);
+      ++points;
+      assert_true((point.velocity_radps.cwiseAbs().array() <= limits.velocity_radps.array()).all());
+      assert_true((point.position_rad.array() >= limits.lower_rad.array() - 1e-9).all());
+      assert_true((point.position_rad.array() <= limits.upper_rad.array() + 1e-9).all());
+    }
+  }
+  check(points > 100, "only %d points", points);
+}
+
+void a_guide_that_the_world_has_outdated_is_dropped_within_100_ms(void**) {
+  Foreseeing world(kBehindTheBar, true);
+  world.put_in_the_way();
+  int cycles = 0;
+  while ((!world.guide || world.guide->knots < 2) && ++cycles < 500) world.cycle();
+  check(cycles < 500, "no guide");
+  const Guide old = *world.guide;
+  // A ball where the guide leads: nothing gets to its end any more.
+  const Posture end = forward(world.loop.model.arm, point_of(old, old.end_s()).position_rad);
+  world.loop.add_sphere(end.tool_position, Vector3::Zero(), 0.25);
+  for (int i = 0; i < 10; ++i) world.cycle();
+  const bool kept = world.guide->knots == old.knots && world.guide->position_rad[1] == old.position_rad[1];
+  check(!kept, "the old guide is still followed");
+}
+
+void a_target_that_nobody_can_reach_is_waited_for(void**) {
+  Foreseeing world(Vector3(2.0, 0.0, 0.5), true);
+  world.run(4.0);
+  assert_int_equal(static_cast<int>(world.loop.last.report.outlook), static_cast<int>(Outlook::kWaiting));
+  test::check_stream(world.loop);
+}
+
+void thinking_does_not_allocate(void**) {
+  Foreseeing world(kBehindTheBar, true);
+  world.put_in_the_way();
+  world.run(0.7);
+  const int64_t before = test::allocation_count();
+  world.run(3.0);
+  const int64_t after = test::allocation_count();
+  // ClosedLoop itself does not allocate either once it has sent everything once.
+  assert_int_equal(after - before, 0);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(with_a_bar_in_the_straight_way_the_arm_arrives_by_foresight_alone),
+      cmocka_unit_test(where_the_law_will_do_there_is_no_guide),
+      cmocka_unit_test(the_same_world_gives_the_same_guides),
+      cmocka_unit_test(guides_keep_the_limits_of_the_joints),
+      cmocka_unit_test(a_guide_that_the_world_has_outdated_is_dropped_within_100_ms),
+      cmocka_unit_test(a_target_that_nobody_can_reach_is_waited_for),
+      cmocka_unit_test(thinking_does_not_allocate),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
