@@ -26,6 +26,7 @@ CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay
+BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 LIBRARIES := $(foreach l,support campaign sim firmware,$(BUILD)/lib$(l).a)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -45,6 +46,9 @@ all: $(PROGRAMS) ## set up what is missing and build the programs
 campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
+bench: $(BUILD)/bench ## CPU time of a control cycle beside the bare computation
+	@$(BUILD)/bench
+
 figures: all ## figures of the paper's three simulations, both laws, and the trade-off over the gains
 	@$(PYTHON) host/tools/figures.py
 
@@ -58,13 +62,13 @@ lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
 clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a
+	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test campaign figures timing soak lint clean help
+.PHONY: all run test campaign bench figures timing soak lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -107,6 +111,9 @@ $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BU
 
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+$(BUILD)/bench: $(BENCH) $(LIBRARIES)
+	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd -lcmocka $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)
