@@ -34,6 +34,7 @@ FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
               $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/config io/config_section))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
+BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
 LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
@@ -72,6 +73,9 @@ all: $(PROGRAMS) ## set up what is missing and build the programs
 campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
+bench: $(BUILD)/bench ## CPU time of a control cycle beside the bare computation
+	@$(BUILD)/bench
+
 figures: all ## figures of all scenarios of one arm, both laws, and the trade-off over the paper's gains
 	@$(PYTHON) host/tools/figures.py
 
@@ -101,13 +105,13 @@ lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
 clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/*.a $(BUILD)/*.jar
+	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test peers-test faults fuzz sanitize campaign figures timing soak view view-test spy report lint clean help
+.PHONY: all run test peers-test faults fuzz sanitize campaign bench figures timing soak view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -168,6 +172,8 @@ $(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
 
 $(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+$(BUILD)/bench: $(BENCH) $(LIBRARIES)
+	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd -lcmocka $(LIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)

@@ -35,26 +35,30 @@ Threats find_threats(const Clearance& clearance) {
 
 double clearance_at(const Surroundings& now, const Threats& threats, const JointVector& q_rad, double time_s) {
   const Posture posture = forward(now.arm, q_rad);
+  std::array<Capsule, kMaxShapes> links;
+  int count = 0;
+  for (const LinkShape& shape : now.arm.shapes)
+    if (shape.body > 0) links[count++] = placed(posture, shape);
   double least_m = std::numeric_limits<double>::infinity();
-  for (const LinkShape& shape : now.arm.shapes) {
-    if (shape.body == 0) continue;
-    const Capsule link = placed(posture, shape);
-    for (int i = 0; i < threats.count; ++i) {
-      const Capsule then = moved(now.obstacles.set->obstacles[threats.obstacles[i]], now.obstacles.age_s + time_s);
-      const NearestPoints points = nearest_on_axes(link, then);
-      least_m = std::min(least_m, (points.a - points.b).norm() - link.radius_m - then.radius_m);
+  for (int i = 0; i < threats.count; ++i) {
+    const Capsule then = moved(now.obstacles.set->obstacles[threats.obstacles[i]], now.obstacles.age_s + time_s);
+    for (int l = 0; l < count; ++l) {
+      const NearestPoints points = nearest_on_axes(links[l], then);
+      least_m = std::min(least_m, (points.a - points.b).norm() - links[l].radius_m - then.radius_m);
     }
   }
   return least_m;
 }
 
-/// The least clearance on the way when the arm takes up a joint velocity as fast as it can and keeps it.
-double least_clearance(const Surroundings& now, const Threats& threats, const JointVector& velocity_radps) {
+/// The least clearance on the way when the arm takes up a joint velocity as fast as it can and keeps it. Below enough_m
+/// the rest of the way is not looked at.
+double least_clearance(const Surroundings& now, const Threats& threats, const JointVector& velocity_radps,
+                       double enough_m) {
   const JointLimits& limits = now.arm.limits;
   const JointVector change = limits.acceleration_radps2 * kStep_s;
   JointVector q_rad = now.position_rad, qd_radps = now.last_velocity_radps;
   double least_m = std::numeric_limits<double>::infinity();
-  for (double time_s = kStep_s; time_s <= threats.last_s + kAfter_s; time_s += kStep_s) {
+  for (double time_s = kStep_s; time_s <= threats.last_s + kAfter_s && least_m >= enough_m; time_s += kStep_s) {
     const JointVector next = qd_radps + (velocity_radps - qd_radps).cwiseMax(-change).cwiseMin(change);
     q_rad = (q_rad + 0.5 * kStep_s * (qd_radps + next)).cwiseMax(limits.lower_rad).cwiseMin(limits.upper_rad);
     qd_radps = next;
@@ -69,14 +73,21 @@ class Judge {
   Judge(const ShieldSettings& settings, const Surroundings& now, const Nearness& nearness)
       : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance)) {}
 
-  double missing_m(const JointVector& velocity_radps) const {
-    return std::max(0.0, settings_.hard_clearance_m - least_clearance(now_, threats_, velocity_radps));
-  }
-
-  double cost(const JointVector& velocity_radps) const {
+  /// Exact below too_much; else anything from there on, which takes less time to find out.
+  double cost(const JointVector& velocity_radps, double too_much) const {
     const JointVector off = velocity_radps - nearness_.wish_radps;
     const double tool = (nearness_.tool_jacobian * off).squaredNorm();
-    return 0.5 * (off.squaredNorm() + nearness_.tool_weight * tool) + kMissWeight * missing_m(velocity_radps);
+    const double distance = 0.5 * (off.squaredNorm() + nearness_.tool_weight * tool);
+    if (distance >= too_much) return distance;
+    const double rounding_m = 1e-9;
+    const double most_m = (too_much - distance) / kMissWeight + rounding_m;
+    return distance + kMissWeight * missing_m(velocity_radps, most_m);
+  }
+
+  /// Exact up to most_m.
+  double missing_m(const JointVector& velocity_radps, double most_m) const {
+    const double enough_m = settings_.hard_clearance_m - most_m;
+    return std::max(0.0, settings_.hard_clearance_m - least_clearance(now_, threats_, velocity_radps, enough_m));
   }
 
  private:
@@ -122,11 +133,11 @@ Evasion evade(const ShieldSettings& settings, const Surroundings& now, const Shi
               const VelocityRange& range, const Nearness& nearness, const JointVector& plan_radps) {
   if (!is_threatened(rows)) return {plan_radps, false};
   const Judge judge(settings, now, nearness);
-  if (judge.missing_m(plan_radps) <= 0.0) return {plan_radps, false};
+  if (judge.missing_m(plan_radps, 0.0) <= 0.0) return {plan_radps, false};
   JointVector best = plan_radps;
-  double best_cost = judge.cost(plan_radps);
+  double best_cost = judge.cost(plan_radps, std::numeric_limits<double>::infinity());
   const auto consider = [&](const JointVector& candidate, double advantage) {
-    const double cost = advantage * judge.cost(candidate);
+    const double cost = advantage * judge.cost(candidate, best_cost / advantage);
     if (cost >= best_cost) return;
     best = candidate;
     best_cost = cost;

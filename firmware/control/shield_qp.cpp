@@ -11,12 +11,8 @@ constexpr int kMostRounds = 3;
 
 // Unknowns: the joint velocities, then a slack for each tier. A slack is scaled so that its weight is 1; what is left
 // of the weight is by how much a unit of it relieves a row: 1 / sqrt(weight).
-constexpr int kUnknowns = kMaxJoints + kTiers;
 constexpr double kHardRelief = 1e-3;
 constexpr double kPassRelief = 3e-2;
-
-using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
 double relief(const Nearness& near, Tier tier) {
   if (tier == Tier::kHard) return kHardRelief;
@@ -24,12 +20,17 @@ double relief(const Nearness& near, Tier tier) {
   return 1.0 / std::sqrt(near.comfort_weight);
 }
 
-/// min 1/2 x' hessian x + gradient' x  subject to  conditions x + offsets >= 0, for at most `row_capacity` rows.
-template <int row_capacity>
+/// min 1/2 x' hessian x + gradient' x  subject to  conditions x + offsets >= 0, for at most so many joints and rows:
+/// most arms have 7 joints, most cycles few rows, and all of a problem's size is worked through.
+template <int joint_capacity, int row_capacity>
 struct Problem {
-  static constexpr int kSlacks = 2 * kMaxJoints;
+  static constexpr int kUnknowns = joint_capacity + kTiers;
+  static constexpr int kSlacks = 2 * joint_capacity;
   static constexpr int kRows = kSlacks + kTiers;
   static constexpr int kConditions = kRows + row_capacity;
+
+  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+  using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
   Hessian hessian = Hessian::Identity();
   Unknowns gradient = Unknowns::Zero();
@@ -47,13 +48,13 @@ struct Problem {
       offsets[2 * i + 1] = range.upper_radps[i];
     }
     for (int tier = 0; tier < kTiers; ++tier) {
-      conditions(kSlacks + tier, kMaxJoints + tier) = 1.0;
+      conditions(kSlacks + tier, joint_capacity + tier) = 1.0;
       offsets[kSlacks + tier] = 0.0;
     }
     for (int i = 0; i < rows.count; ++i) {
       const ShieldRow& row = rows.rows[i];
       conditions.row(kRows + i).head(n) = row.row.transpose();
-      conditions(kRows + i, kMaxJoints + static_cast<int>(row.tier)) = relief(near, row.tier);
+      conditions(kRows + i, joint_capacity + static_cast<int>(row.tier)) = relief(near, row.tier);
       offsets[kRows + i] = -row.bound;
     }
   }
@@ -69,7 +70,7 @@ struct Problem {
   /// The hard rows that had to be given up stay given up by just that much; the others may not hide behind them.
   void settle_worst(const Unknowns& x, double loss_mps) {
     for (int c = kRows; c < kConditions; ++c) {
-      double& coefficient = conditions(c, kMaxJoints);
+      double& coefficient = conditions(c, joint_capacity);
       const double rounding = 1e-6;
       if (coefficient == 0.0 || conditions.row(c).dot(x) + offsets[c] > rounding) continue;
       coefficient = 0.0;
@@ -78,24 +79,32 @@ struct Problem {
   }
 };
 
-template <int row_capacity>
+template <int joint_capacity, int row_capacity>
 QpSolution solve_sized(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
   const Eigen::Index n = near.wish_radps.size();
   QpSolution solution{near.wish_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
-  Problem<row_capacity> problem(rows, range, near);
+  Problem<joint_capacity, row_capacity> problem(rows, range, near);
   const double wish_cost = -0.5 * problem.gradient.head(n).dot(near.wish_radps);
   for (int round = 0; round < kMostRounds; ++round) {
-    Unknowns x;
+    typename Problem<joint_capacity, row_capacity>::Unknowns x;
     if (!problem.solve(x)) break;
     solution.velocity_radps = x.head(n).cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
     solution.cost = wish_cost + 0.5 * x.dot(problem.hessian * x) + problem.gradient.dot(x);
-    const double loss_mps = x[kMaxJoints] * kHardRelief;
+    const double loss_mps = x[joint_capacity] * kHardRelief;
     solution.loss_mps = std::max(solution.loss_mps, loss_mps);
     const double negligible_mps = 1e-4;
     if (loss_mps < negligible_mps) break;
     problem.settle_worst(x, loss_mps);
   }
   return solution;
+}
+
+template <int joint_capacity>
+QpSolution solve_for(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
+  constexpr int kFewRows = 12, kSomeRows = 28;
+  if (rows.count <= kFewRows) return solve_sized<joint_capacity, kFewRows>(rows, range, near);
+  if (rows.count <= kSomeRows) return solve_sized<joint_capacity, kSomeRows>(rows, range, near);
+  return solve_sized<joint_capacity, kMaxRows>(rows, range, near);
 }
 
 /// The wish itself, where nothing stands against it: most cycles need no QP.
@@ -111,9 +120,9 @@ bool is_met(const ShieldRows& rows, const VelocityRange& range, const JointVecto
 
 QpSolution solve(const ShieldRows& rows, const VelocityRange& range, const Nearness& nearness) {
   if (is_met(rows, range, nearness.wish_radps)) return {nearness.wish_radps};
-  constexpr int kFewRows = 12;
-  return rows.count <= kFewRows ? solve_sized<kFewRows>(rows, range, nearness)
-                                : solve_sized<kMaxRows>(rows, range, nearness);
+  constexpr int kCommonJoints = 7;
+  return nearness.wish_radps.size() <= kCommonJoints ? solve_for<kCommonJoints>(rows, range, nearness)
+                                                     : solve_for<kMaxJoints>(rows, range, nearness);
 }
 
 }  // namespace sidestep

@@ -5,20 +5,11 @@
 
 namespace sidestep {
 
-Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
-  const Vector3 axis = end - start;
-  const double length2 = axis.squaredNorm();
-  if (length2 <= 0.0) return start;
-  return start + std::clamp(axis.dot(p - start) / length2, 0.0, 1.0) * axis;
-}
-
-NearestPoints nearest_on_axes(const Capsule& a, const Capsule& b) {
+NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b) {
   const Vector3 u = a.end - a.start;
   const Vector3 v = b.end - b.start;
   const Vector3 w = a.start - b.start;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-  if (vv <= 0.0) return {nearest_on_segment(a.start, a.end, b.start), b.start};
-  if (uu <= 0.0) return {a.start, nearest_on_segment(b.start, b.end, a.start)};
 
   // Nearest on the infinite lines, clamped to a; then the nearest on b to that, clamped; then once more on a.
   const double determinant = uu * vv - uv * uv;

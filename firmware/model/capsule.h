@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "firmware/model/types.h"
 
 namespace sidestep {
@@ -18,10 +20,22 @@ struct NearestPoints {
 };
 
 /// Point of the segment start-end that is nearest to p. All in one frame, m.
-Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p);
+inline Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
+  const Vector3 axis = end - start;
+  const double length2 = axis.squaredNorm();
+  if (length2 <= 0.0) return start;
+  return start + std::clamp(axis.dot(p - start) / length2, 0.0, 1.0) * axis;
+}
 
-/// Nearest points of the axes of two capsules; well defined for points and for parallel segments too.
-NearestPoints nearest_on_axes(const Capsule& a, const Capsule& b);
+/// Nearest points of the axes of two capsules of some length; well defined for parallel ones too.
+NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b);
+
+/// Nearest points of the axes of any two capsules. Most obstacles are spheres, so that case comes first and inline.
+inline NearestPoints nearest_on_axes(const Capsule& a, const Capsule& b) {
+  if (b.start == b.end) return {nearest_on_segment(a.start, a.end, b.start), b.start};
+  if (a.start == a.end) return {a.start, nearest_on_segment(b.start, b.end, a.start)};
+  return nearest_on_segments(a, b);
+}
 
 /// The capsule along the longest edge of a box, in the box's frame, that holds all eight corners. Edges in m.
 Capsule capsule_around_box(const Vector3& edges_m);

@@ -1,0 +1,172 @@
+// What a control cycle costs: CPU time of step() beside the bare computation, among moving spheres.
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "tests/bench/bare.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using bench::Bare;
+using bench::bare_cycle;
+
+namespace {
+
+constexpr double kLargestSpeed_mps = 0.3;
+constexpr double kTargetCircle_m = 0.15, kTargetRate_radps = 0.5;
+constexpr int kRepeats = 2;       // of one and the same call; the least counts
+constexpr int kStartCycles = 60;  // until the controller tracks
+
+struct Box {
+  Vector3 lower, upper;
+};
+const Box kWorkspace{Vector3(-1, -1, 0), Vector3(1, 1, 1.3)};
+const Box kRoom{Vector3(-5, -5, 0), Vector3(5, 5, 3)};
+
+struct Scene {
+  const char* where;
+  int spheres;
+  const Box& box;
+  int cycles;
+};
+
+double cpu_us() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
+}
+
+template <typename Call>
+double least_us(const Call& call) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kRepeats; ++i) {
+    const double before_us = cpu_us();
+    call();
+    least = std::min(least, cpu_us() - before_us);
+  }
+  return least;
+}
+
+/// Adds up where the time of step() goes.
+class StageTimes : public StageProbe {
+ public:
+  void start() { before_us_ = cpu_us(); }
+  void passed(Stage stage) override {
+    const double now_us = cpu_us();
+    sum_us_[static_cast<size_t>(stage)] += now_us - before_us_;
+    before_us_ = now_us;
+  }
+  double share(Stage stage) const {
+    return sum_us_[static_cast<size_t>(stage)] / std::accumulate(sum_us_.begin(), sum_us_.end(), 0.0);
+  }
+
+ private:
+  double before_us_ = 0.0;
+  std::array<double, kStages> sum_us_{};
+};
+
+/// Cycle times of one row of the table.
+struct Times {
+  std::vector<double> us;
+
+  double at(double share) {
+    std::sort(us.begin(), us.end());
+    return us[static_cast<size_t>(share * static_cast<double>(us.size() - 1))];
+  }
+  double mean() const { return std::accumulate(us.begin(), us.end(), 0.0) / static_cast<double>(us.size()); }
+};
+
+void print(const Scene& scene, const char* what, Times& times) {
+  std::printf("%-10s %5d  %-10s %9.2f %9.2f %9.2f %9.2f", scene.where, scene.spheres, what, times.at(0.5), times.mean(),
+              times.at(0.99), times.at(1.0));
+}
+
+void scatter(const Scene& scene, test::ClosedLoop& loop) {
+  test::Random random(static_cast<unsigned>(scene.spheres));
+  const Vector3 size_m = scene.box.upper - scene.box.lower;
+  for (int i = 0; i < scene.spheres; ++i) {
+    const Vector3 position_m = scene.box.lower + size_m.cwiseProduct(random.inside(0, 1));
+    loop.add_sphere(position_m, random.uniform(0, kLargestSpeed_mps) * random.direction());
+  }
+}
+
+void bounce(const Box& box, ObstacleSet& spheres) {
+  for (int i = 0; i < spheres.count; ++i) {
+    Obstacle& sphere = spheres.obstacles[static_cast<size_t>(i)];
+    for (int axis = 0; axis < 3; ++axis) {
+      double& speed_mps = sphere.velocity_mps[axis];
+      if (sphere.capsule.start[axis] < box.lower[axis]) speed_mps = std::abs(speed_mps);
+      if (sphere.capsule.start[axis] > box.upper[axis]) speed_mps = -std::abs(speed_mps);
+    }
+  }
+}
+
+void lead_target(double now_s, Target& target) {
+  const double phase = kTargetRate_radps * now_s;
+  target.position_m = Vector3(-0.35, 0.0, 0.8) + kTargetCircle_m * Vector3(0, std::cos(phase), std::sin(phase));
+  target.velocity_mps = kTargetCircle_m * kTargetRate_radps * Vector3(0, -std::sin(phase), std::cos(phase));
+}
+
+struct Measured {
+  Times bare, step;
+  StageTimes stages;
+};
+
+/// A closed loop with an ideal arm; every message is of the present cycle.
+Measured measure(const Scene& scene, const char* law) {
+  test::ClosedLoop loop(test::lwa3_model(law), test::home_rad());
+  loop.target_speaks = true;
+  scatter(scene, loop);
+  Measured measured;
+  for (int cycle = -kStartCycles; cycle < scene.cycles; ++cycle) {
+    bounce(scene.box, *loop.obstacles);
+    lead_target(loop.now_s(), loop.target);
+    const Inputs inputs = loop.receive();
+    Result result;
+    Bare bare;
+    const double bare_us = least_us([&] {
+      bare = bare_cycle(loop.model.arm, loop.arm.position_rad, *inputs.obstacles.message, loop.target.position_m);
+    });
+    const double step_us = least_us([&] { result = step(loop.model, loop.state, inputs, loop.now_s()); });
+    if (cycle >= 0) {
+      measured.bare.us.push_back(bare_us);
+      measured.step.us.push_back(step_us);
+      measured.stages.start();
+      step(loop.model, loop.state, inputs, loop.now_s(), &measured.stages);
+    }
+    loop.follow(result);
+  }
+  return measured;
+}
+
+void print_scene(const Scene& scene) {
+  Measured paper = measure(scene, "paper"), sidestep = measure(scene, "sidestep");
+  print(scene, "bare", sidestep.bare);
+  std::printf("\n");
+  print(scene, "paper", paper.step);
+  std::printf("\n");
+  print(scene, "sidestep", sidestep.step);
+  const auto percent = [&](Stage stage) { return 100.0 * sidestep.stages.share(stage); };
+  std::printf("  %5.2f / %5.2f  %3.0f / %3.0f / %3.0f\n", sidestep.step.at(0.5) / sidestep.bare.at(0.5),
+              sidestep.step.mean() / sidestep.bare.mean(), percent(Stage::kClearance), percent(Stage::kLaw),
+              percent(Stage::kShield));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  std::printf("CPU time of one control cycle, us\n");
+  std::printf("%-10s %5s  %-10s %9s %9s %9s %9s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
+              "times bare", "clearance / law / shield, %");
+  for (const int spheres : {10, 50}) print_scene({"near", spheres, kWorkspace, 4000});
+  for (const int spheres : {500, 4096}) {
+    print_scene({"far", spheres, kRoom, 300});
+    print_scene({"near", spheres, kWorkspace, 300});
+  }
+}
