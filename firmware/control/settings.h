@@ -50,14 +50,14 @@ struct ShieldSettings {
   double pass_clearance_m = 0.04;  ///< at the closest approach of a moving obstacle
   double pass_gain_per_s = 6.0;
   double pass_reaction_s = 0.12;      ///< the arm's own time to get moving
-  double pass_horizon_s = 0.6;        ///< how far ahead an obstacle's way is looked at
+  double pass_horizon_s = 0.5;        ///< how far ahead an obstacle's way is looked at
   double comfort_clearance_m = 0.16;  ///< kept where the task leaves room
   double comfort_gain_per_s = 4.0;
   double comfort_far_m = 0.4;         ///< with the tool farther than this from the target comfort has its full weight,
   double comfort_near_m = 0.15;       ///< nearer than this the least: then it may move the arm but hardly the tool
   double comfort_least_weight = 0.2;  ///< s2/m2
-  double comfort_weight = 300.0;      ///< of the comfort against the wish, s2/m2
-  double tool_weight = 10.0;          ///< of the tool's velocity against the joints', 1/m2
+  double comfort_weight = 1000.0;     ///< of the comfort against the wish, s2/m2
+  double tool_weight = 60.0;          ///< of the tool's velocity against the joints', 1/m2
   double self_clearance_m = 0.02;     ///< between links that are no neighbours
   double range_m = 0.4;               ///< pairs farther apart do not matter yet
 };
