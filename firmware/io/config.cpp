@@ -1,5 +1,7 @@
 #include "firmware/io/config.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <stdexcept>
 
@@ -163,6 +165,18 @@ void read_foresight(Section section, ForesightSettings& foresight) {
   section.finish();
 }
 
+void read_dialect(Section& root, Config& config) {
+  std::string dialect = "sidestep";
+  root.choice("dialect", dialect, {"sidestep", "iiwa"});
+  if (dialect != "iiwa") return;
+  if (config.model.arm.joints != kIiwaJoints)
+    root.fail("dialect", fmt::format("iiwa is for {} joints, the arm has {}", kIiwaJoints, config.model.arm.joints));
+  config.dialect = Dialect::kIiwa;
+  config.model.settings.start_guard_s = kIiwaStartGuard_s;
+  config.channels.arm_state = "IIWA_STATUS";
+  config.channels.arm_command = "IIWA_COMMAND";
+}
+
 Arm read_robot(Section robot, const std::string& config_file, const Overrides& overrides) {
   std::string urdf, base, tip;
   robot.text("urdf", urdf);
@@ -198,6 +212,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   settings.law = law == "paper" ? Law::kPaper : Law::kSidestep;
 
   config.model.arm = read_robot(root.section("robot"), file, overrides);
+  read_dialect(root, config);
   read_limits(root.section("limits"), config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "firmware/control/cycle.h"
+#include "firmware/io/dialect.h"
 
 namespace sidestep {
 
@@ -34,6 +35,7 @@ struct Overrides {
 /// A configuration, complete and checked.
 struct Config {
   Model model;
+  Dialect dialect = Dialect::kSidestep;
   Channels channels;
   BlackboxSettings blackbox;
   std::string file;  ///< what it was read from, with

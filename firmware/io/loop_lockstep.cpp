@@ -16,7 +16,7 @@ class Lockstep {
   Lockstep(const Config& config, const std::string& lcm_url, Requests& requests)
       : blackbox_(config, requests.write_blackbox),
         adviser_(config.model, true),
-        wire_(lcm_url, config.channels, config.model.arm),
+        wire_(lcm_url, config),
         runner_(config, wire_, blackbox_, adviser_, true, kLimitingNothing),
         admission_(config.model.arm.joints, config.model.settings, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),

@@ -21,7 +21,8 @@ constexpr double kLongestBraking_s = 5.0;
 /// The receiving side: checks what comes in and puts the newest valid message of each kind into its mailbox.
 class Receiver {
  public:
-  Receiver(Wire& wire, int joints, const Settings& settings) : wire_(wire), admission_(joints, settings) {
+  Receiver(Wire& wire, const Config& config)
+      : wire_(wire), admission_(config.model.arm.joints, config.model.settings, false, config.dialect) {
     wire.on_arm_state([this](const void* bytes, size_t size) { post(bytes, size, arm); });
     wire.on_target([this](const void* bytes, size_t size) { post(bytes, size, target); });
     wire.on_obstacles([this](const void* bytes, size_t size) { post(bytes, size, obstacles); });
@@ -124,8 +125,8 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   // LCM starts a thread at the first subscription; it and the receiver inherit the priority of this one.
   request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
 
-  Wire wire(lcm_url, config.channels, config.model.arm);
-  const auto receiver = std::make_unique<Receiver>(wire, config.model.arm.joints, config.model.settings);
+  Wire wire(lcm_url, config);
+  const auto receiver = std::make_unique<Receiver>(wire, config);
   CycleRunner runner(config, wire, blackbox, adviser, false, limiting);
   std::atomic<bool> end{false};
   std::thread receiving([&] { receiver->run(end); });

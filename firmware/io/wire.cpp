@@ -35,7 +35,7 @@ struct Wire::Network {
   OwnMessages own_commands;
   Encoder encoder;
 
-  Network(const Channels& the_channels, const Arm& arm) : channels(the_channels), encoder(arm) {}
+  explicit Network(const Config& config) : channels(config.channels), encoder(config.model.arm, config.dialect) {}
   ~Network() {
     if (lcm) lcm_destroy(lcm);
   }
@@ -56,8 +56,7 @@ struct Wire::Network {
   }
 };
 
-Wire::Wire(const std::string& url, const Channels& channels, const Arm& arm)
-    : network_(std::make_unique<Network>(channels, arm)) {
+Wire::Wire(const std::string& url, const Config& config) : network_(std::make_unique<Network>(config)) {
   network_->lcm = lcm_create(url.empty() ? nullptr : url.c_str());
   if (!network_->lcm)
     throw std::runtime_error(fmt::format("LCM: cannot use the network '{}' (is there a multicast route?)",

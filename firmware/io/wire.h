@@ -16,7 +16,7 @@ using ByteHandler = std::function<void(const void* bytes, size_t size)>;
 class Wire {
  public:
   /// url empty: LCM's own default. Throws std::runtime_error when the network cannot be used.
-  Wire(const std::string& url, const Channels& channels, const Arm& arm);
+  Wire(const std::string& url, const Config& config);
   ~Wire();
 
   /// Handlers run inside receive(), in the order of arrival, and must not throw. Call before the first receive().

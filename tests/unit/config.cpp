@@ -85,6 +85,9 @@ void every_word_arrives_where_it_belongs(void**) {
   assert_true(load("paper: {tool_velocity: measured}").model.settings.paper.tool_velocity == ToolVelocity::kMeasured);
   assert_false(load("obstacles: {wait_for_first: false}").model.settings.wait_for_obstacles);
   assert_true(load("obstacles: {wait_for_first: true}").model.settings.wait_for_obstacles);
+  assert_true(load("").dialect == Dialect::kSidestep);
+  assert_true(load("dialect: sidestep").dialect == Dialect::kSidestep);
+  assert_true(load("dialect: iiwa").dialect == Dialect::kIiwa);
   const Channels channels =
       load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F}")
           .channels;
@@ -93,6 +96,14 @@ void every_word_arrives_where_it_belongs(void**) {
                           .c_str(),
                       "ABCDEF");
   assert_string_equal(load("blackbox: {folder: here}").blackbox.folder.c_str(), "here");
+}
+
+void a_dialect_brings_its_channels_and_its_patience(void**) {
+  const Config iiwa = load("dialect: iiwa\nchannels: {arm_command: MINE}");
+  assert_string_equal(iiwa.channels.arm_state.c_str(), "IIWA_STATUS");
+  assert_string_equal(iiwa.channels.arm_command.c_str(), "MINE");
+  check_near(iiwa.model.settings.start_guard_s, 0.25, 0);
+  check_near(load("").model.settings.start_guard_s, 0.0, 0);
 }
 
 void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
@@ -181,6 +192,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_number_arrives_where_it_belongs),
       cmocka_unit_test(every_word_arrives_where_it_belongs),
+      cmocka_unit_test(a_dialect_brings_its_channels_and_its_patience),
       cmocka_unit_test(the_lwa3_file_loads_and_says_what_the_defaults_say),
       cmocka_unit_test(the_papers_parameters_start_from_the_values_written_down),
       cmocka_unit_test(limits_come_from_the_config_before_the_urdf),
