@@ -56,8 +56,9 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+peers-test: all $(BUILD)/.python-peers ## the arms against Pinocchio; Drake's simulated iiwa in the loop for a minute (installs both)
 	@$(PYTHON) tests/peers/kinematics.py
+	@$(PYTHON) tests/peers/iiwa.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
 	@$(MAKE) $(FUZZERS)
