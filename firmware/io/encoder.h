@@ -22,8 +22,8 @@ struct CycleRecord {
 
 /// The bytes of a message.
 struct Packet {
-  const uint8_t* bytes;
-  size_t size;
+  const uint8_t* bytes = nullptr;
+  size_t size = 0;
 };
 
 /// Values to wire formats, without allocating. A packet stays valid until the next one is made.

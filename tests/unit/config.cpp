@@ -95,6 +95,11 @@ void every_word_arrives_where_it_belongs(void**) {
                        channels.controller_status + channels.loop_timing)
                           .c_str(),
                       "ABCDEF");
+  const Neighbours neighbours =
+      load("neighbours: {publish: A, listen: [B, C], base_position_m: [1, 2, 3], base_rpy_rad: [0, 0, 1.5]}")
+          .neighbours;
+  assert_string_equal((neighbours.publish + neighbours.listen[0] + neighbours.listen[1]).c_str(), "ABC");
+  check_near(neighbours.world_from_base * Vector3(1, 0, 0), Vector3(1 + std::cos(1.5), 2 + std::sin(1.5), 3), 1e-12);
   assert_string_equal(load("blackbox: {folder: here}").blackbox.folder.c_str(), "here");
 }
 
