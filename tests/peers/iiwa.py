@@ -73,7 +73,7 @@ def publish(wire, utime, time_s):
 
 
 def play(iiwa, witness, duration_s):
-    """Errors and clearances, m, of each period from the first one that is tracked; the world stands still until then."""
+    """Errors and clearances, m, of each period from the first that is tracked; the world stands still until then."""
     errors_m, clearances_m, start_s = [], [], None
     while start_s is None or iiwa.now_s() < start_s + duration_s:
         now_s = iiwa.now_s()
@@ -95,7 +95,7 @@ def play(iiwa, witness, duration_s):
 def judge(iiwa, witness, errors_m, clearances_m, acceleration_radps2):
     """(held, what was measured) line by line."""
     commands = np.array(witness.commands)
-    positions = np.vstack([HOME_RAD, commands[:, 1:]])
+    positions = np.vstack([HOME_RAD, HOME_RAD, commands[:, 1:]])
     speeds = np.diff(positions, axis=0) / PERIOD_S
     speed = (np.abs(speeds) / iiwa.speed_limits_radps()).max()
     change = np.abs(np.diff(speeds, axis=0)).max() / (acceleration_radps2 * PERIOD_S)
@@ -106,9 +106,9 @@ def judge(iiwa, witness, errors_m, clearances_m, acceleration_radps2):
     yield near[0] < 30 and near[1] < 150, (f"distance to the target: half of the time below {near[0]:.1f} mm, "
                                            f"90 % of it below {near[1]:.0f} mm, most {errors_m.max() * 1e3:.0f} mm")
     yield tracked > 0.95, f"mode TRACK in {100 * tracked:.1f} % of {len(witness.modes)} cycles"
-    yield speed < 1 + 1e-9 and change < 1 + 1e-6, (f"{len(commands)} commands go on from each other from the first: at "
-                                                   f"most {100 * speed:.0f} % of the speed, {100 * change:.0f} % of the "
-                                                   "acceleration")
+    yield speed < 1 + 1e-9 and change < 1 + 1e-6, (f"{len(commands)} commands go on from each other, at most "
+                                                   f"{100 * speed:.0f} % of the speed, {100 * change:.0f} % of the "
+                                                   "acceleration allowed")
     yield silence_s >= GUARD_S, f"first command {1e3 * silence_s:.0f} ms after the first status"
 
 

@@ -56,8 +56,8 @@ class Iiwa:
         add_arm(self._controlled)
         bus = DrakeLcm(lcm_url)
         builder.AddSystem(LcmInterfaceSystem(bus))
-        BuildIiwaControl(builder=builder, lcm=bus, plant=self.plant, iiwa_instance=arm, controller_plant=self._controlled,
-                         driver_config=IiwaDriver(control_mode="position_only"))
+        BuildIiwaControl(builder=builder, lcm=bus, plant=self.plant, iiwa_instance=arm,
+                         controller_plant=self._controlled, driver_config=IiwaDriver(control_mode="position_only"))
         self.scene = scene
         self.simulator = Simulator(builder.Build())
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
