@@ -72,9 +72,8 @@ class Lockstep {
   }
 
   void join(size_t part, const void* bytes, size_t size) {
-    const Neighbourhood::Whole whole = neighbourhood_.join(part, bytes, size, now_s_);
-    if (whole.packet.size > 0 && receive(whole.packet.bytes, whole.packet.size, *obstacles_))
-      obstacles_->age_s = whole.age_s;
+    const auto whole = neighbourhood_.join(part, bytes, size, now_s_);
+    if (whole && receive(whole->packet.bytes, whole->packet.size, *obstacles_)) obstacles_->age_s = whole->age_s;
   }
 
   int64_t rejected() const { return admission_.rejected() + neighbourhood_.rejected(); }

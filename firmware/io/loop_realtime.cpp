@@ -48,8 +48,8 @@ class Receiver {
  private:
   void join(size_t part, const void* bytes, size_t size) {
     const double now_s = monotonic_s();
-    const Neighbourhood::Whole whole = neighbourhood_.join(part, bytes, size, now_s);
-    if (whole.packet.size > 0) return post(whole.packet.bytes, whole.packet.size, now_s - whole.age_s, obstacles);
+    const auto whole = neighbourhood_.join(part, bytes, size, now_s);
+    if (whole) return post(whole->packet.bytes, whole->packet.size, now_s - whole->age_s, obstacles);
     count_rejected();
   }
 

@@ -41,8 +41,8 @@ Neighbourhood::Neighbourhood(const Config& config) : limit_s_(config.model.setti
 
 Neighbourhood::~Neighbourhood() = default;
 
-Neighbourhood::Whole Neighbourhood::join(size_t number, const void* bytes, size_t size, double now_s) {
-  if (parts_.empty()) return {{static_cast<const uint8_t*>(bytes), size}, 0.0};
+std::optional<Neighbourhood::Whole> Neighbourhood::join(size_t number, const void* bytes, size_t size, double now_s) {
+  if (parts_.empty()) return Whole{{static_cast<const uint8_t*>(bytes), size}, 0.0};
   Part& part = *parts_[number];
   const bool admitted = part.gate.admit(bytes, size, now_s, part.draft);
   if (!admitted) reason_ = part.gate.last_reason();
@@ -56,7 +56,11 @@ Neighbourhood::Whole Neighbourhood::join(size_t number, const void* bytes, size_
   utime_ = std::max(utime_ + 1, static_cast<int64_t>(now_s * 1e6));
   whole_->begin(utime_);
   for (size_t k = 0; k < parts_.size(); ++k) add(*parts_[k], static_cast<int>(k), at_s);
-  return {whole_->finish(), now_s - at_s};
+  const Packet packet = whole_->finish();
+  if (packet.size > 0) return Whole{packet, now_s - at_s};
+  ++too_many_;
+  reason_ = "more obstacles than a set holds";
+  return {};
 }
 
 double Neighbourhood::oldest_s() const {
@@ -74,7 +78,7 @@ void Neighbourhood::add(const Part& part, int number, double at_s) {
 }
 
 int64_t Neighbourhood::rejected() const {
-  int64_t sum = 0;
+  int64_t sum = too_many_;
   for (const auto& part : parts_) sum += part->gate.rejected();
   return sum;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "firmware/io/config.h"
@@ -19,12 +20,12 @@ class Neighbourhood {
   ~Neighbourhood();
 
   struct Whole {
-    Packet packet{};     ///< an obstacles_t, valid until the next call; size 0: nothing
-    double age_s = 0.0;  ///< of its oldest part
+    Packet packet;  ///< an obstacles_t, valid until the next call
+    double age_s;   ///< of its oldest part
   };
   /// Takes a message from outside: of our own channel (part 0) or of the k-th neighbour (part k). Nothing comes of one
-  /// that is bad, or while a part is missing or too old.
-  Whole join(size_t part, const void* bytes, size_t size, double now_s);
+  /// that is bad, of more obstacles than a message holds, or while a part is missing or too old.
+  std::optional<Whole> join(size_t part, const void* bytes, size_t size, double now_s);
 
   int64_t rejected() const;
   const char* last_reason() const { return reason_; }  ///< static text; "" when nothing was rejected
@@ -36,6 +37,7 @@ class Neighbourhood {
 
   double limit_s_;
   int64_t utime_ = 0;
+  int64_t too_many_ = 0;
   const char* reason_ = "";
   std::vector<std::unique_ptr<Part>> parts_;  ///< none where nobody is listened to
   std::unique_ptr<class ObstacleEncoder> whole_;

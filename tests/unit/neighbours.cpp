@@ -40,9 +40,9 @@ struct Listener {
 
   /// Whether a whole came of it, then in `set` and `age_s`.
   bool hear(size_t part, const Bytes& bytes, double now_s) {
-    const Neighbourhood::Whole whole = neighbourhood.join(part, bytes.data(), bytes.size(), now_s);
-    age_s = whole.age_s;
-    return whole.packet.size > 0 && gate.admit(whole.packet.bytes, whole.packet.size, now_s - age_s, *set);
+    const auto whole = neighbourhood.join(part, bytes.data(), bytes.size(), now_s);
+    if (whole) age_s = whole->age_s;
+    return whole && gate.admit(whole->packet.bytes, whole->packet.size, now_s - age_s, *set);
   }
 
   Neighbourhood neighbourhood;
@@ -131,6 +131,7 @@ void more_obstacles_than_a_message_holds_are_no_whole(void**) {
   const std::vector<obstacle_t> most(kMaxObstacles, sphere(1, {1, 1, 1}, 0.1, {0, 0, 0}));
   listener.hear(0, encoded(obstacles_message(1, most)), 1.0);
   assert_false(listener.hear(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0));
+  assert_int_equal(listener.neighbourhood.rejected(), 1);
   assert_true(listener.hear(1, encoded(obstacles_message(2, {})), 1.0));
   assert_int_equal(listener.set->count, kMaxObstacles);
 }
@@ -138,9 +139,11 @@ void more_obstacles_than_a_message_holds_are_no_whole(void**) {
 void who_listens_to_nobody_takes_messages_as_they_are(void**) {
   Neighbourhood alone(config_at(pose({0, 0, 0}, 0), {}));
   const uint8_t garbage[] = {1, 2, 3};
-  const Neighbourhood::Whole whole = alone.join(0, garbage, sizeof garbage, 1.0);
-  assert_ptr_equal(whole.packet.bytes, garbage);
-  assert_int_equal(whole.packet.size, sizeof garbage);
+  for (const size_t size : {sizeof garbage, size_t{0}}) {
+    const auto whole = alone.join(0, garbage, size, 1.0);
+    assert_ptr_equal(whole.value().packet.bytes, garbage);
+    assert_int_equal(whole.value().packet.size, size);
+  }
 }
 
 void telling_and_hearing_do_not_allocate(void**) {
@@ -153,7 +156,7 @@ void telling_and_hearing_do_not_allocate(void**) {
   const auto round = [&](int64_t utime) {
     const Packet told = links.encode(arm, utime);
     neighbourhood.join(0, ball.data(), ball.size(), 1.0);
-    return neighbourhood.join(1, told.bytes, told.size, 1.0).packet.size > 0;
+    return neighbourhood.join(1, told.bytes, told.size, 1.0).has_value();
   };
   assert_true(round(1));
   const int64_t before = test::allocation_count();
