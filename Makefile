@@ -32,7 +32,7 @@ TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
-              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/config io/config_section))
+              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config io/config_section))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
@@ -56,8 +56,9 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+peers-test: all $(BUILD)/.python-peers ## the arms against Pinocchio; Drake's simulated iiwa in the loop for a minute (installs both)
 	@$(PYTHON) tests/peers/kinematics.py
+	@$(PYTHON) tests/peers/iiwa.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
 	@$(MAKE) $(FUZZERS)

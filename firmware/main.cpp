@@ -50,6 +50,8 @@ int run(const Arguments& arguments) {
   Config config;
   try {
     config = load_config(arguments.config, arguments.overrides);
+    if (arguments.lockstep && config.dialect != Dialect::kSidestep)
+      throw std::runtime_error("--lockstep: not with dialect iiwa, whose driver may not be answered at once");
   } catch (const std::exception& error) {
     std::cerr << "controller: " << error.what() << "\n";
     return 2;

@@ -15,10 +15,11 @@
 namespace sidestep {
 namespace {
 
-/// A new stream of commands starts from the measured arm, so that nothing jumps; a running one goes on from its last.
+/// A new stream of commands starts from where the arm is held, so that nothing jumps; a running one goes on from its
+/// last.
 void start_from(const Model& model, const ArmState& arm, State& next) {
   const JointVector& fastest = model.arm.limits.velocity_radps;
-  next.position_rad = arm.position_rad;
+  next.position_rad = arm.held_rad.size() > 0 ? arm.held_rad : arm.position_rad;
   next.velocity_radps = arm.velocity_radps.cwiseMax(-fastest).cwiseMin(fastest);
   next.planning = false;
 }
@@ -124,8 +125,8 @@ Command gate(const Model& model, const State& state, const ArmState& arm, const 
 }
 
 /// A stream of commands runs in every mode that moves the arm, and after a fault until the arm is at rest.
-bool goes_on(const State& state, const JointVector& velocity_radps) {
-  if (state.supervision.mode == Mode::kWait) return false;
+bool goes_on(const State& state, bool arm_starting, const JointVector& velocity_radps) {
+  if (arm_starting || state.supervision.mode == Mode::kWait) return false;
   if (state.supervision.mode == Mode::kFault) return state.commanding && !velocity_radps.isZero(0.0);
   return true;
 }
@@ -136,12 +137,12 @@ void distrust(double now_s, State& next) {
   next.consistent_since_s = now_s;
 }
 
-void remember(const Command& command, const Wish& wish, State& next) {
+void remember(const Command& command, const Wish& wish, bool arm_starting, State& next) {
   next.position_rad = command.position_rad;
   next.velocity_radps = command.velocity_radps;
   next.planning = next.supervision.mode == Mode::kTrack;
   next.planned_mps = wish.tool_velocity_mps;
-  next.commanding = goes_on(next, command.velocity_radps);
+  next.commanding = goes_on(next, arm_starting, command.velocity_radps);
 }
 
 void report_tool(const Posture& posture, const ArmState& arm, Report& report) {
@@ -175,9 +176,10 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
 
   const Facts facts = observe(model, inputs, now_s, next);
   next.supervision = next_mode(state.supervision, facts);
+  const bool streaming = next.commanding = state.commanding && !facts.arm_starting;
   if (facts.arm_known) {
     const ArmState& arm = *inputs.arm.message;
-    if (!state.commanding) start_from(model, arm, next);
+    if (!streaming) start_from(model, arm, next);
 
     const Posture posture = forward(model.arm, arm.position_rad);
     passed(Stage::kObserve);
@@ -196,7 +198,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     passed(Stage::kShield);
     if (!safe.allFinite()) distrust(now_s, next);
     result.command = gate(model, next, arm, range, safe, report.limiting);
-    remember(result.command, wish, next);
+    remember(result.command, wish, facts.arm_starting, next);
     passed(Stage::kGate);
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);
@@ -213,7 +215,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   report.mode = next.supervision.mode;
   report.fault = next.supervision.fault;
   report.message = next.supervision.message;
-  result.commanding = next.commanding || (state.commanding && report.mode == Mode::kFault);  // rest is said too
+  result.commanding = next.commanding || (streaming && report.mode == Mode::kFault);  // rest is said too
   return result;
 }
 

@@ -47,6 +47,7 @@ struct State {
   int64_t arm_count = 0;  ///< of the arm state seen last, and what it said:
   int64_t arm_utime = 0;
   double arm_received_s = 0.0;
+  double arm_started_s = 0.0;  ///< when its driver began to speak
   JointVector arm_position_rad;
   double consistent_since_s = 0.0;
   int skipped_in_a_row = 0;

@@ -13,6 +13,7 @@ struct ArmState {
   int64_t utime = 0;
   JointVector position_rad;
   JointVector velocity_radps;
+  JointVector held_rad{};  ///< what the drives are told to hold, where they say so; size 0: not known
 };
 
 struct Target {

@@ -17,6 +17,12 @@ bool reachable(const Model& model, const State& before, const ArmState& arm) {
   return (step_rad.array() <= allowed_rad.array()).all();
 }
 
+/// Whether this may be the first state of another driver: its clock starts over, or it was silent for long.
+bool speaks_anew(double silence_s, const Latest<ArmState>& arm, const State& before) {
+  return before.arm_count == 0 || arm.message->utime < before.arm_utime ||
+         arm.received_s - before.arm_received_s > silence_s;
+}
+
 /// Returns false when a new arm state contradicts the one before.
 bool follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s, State& next) {
   if (arm.count == next.arm_count) return true;
@@ -24,6 +30,7 @@ bool follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s, S
   const bool gap = arm.received_s - next.arm_received_s > model.settings.ages.arm_state_lost_s;
   const bool agrees = first || reachable(model, next, *arm.message);
   if (first || gap || !agrees) next.consistent_since_s = now_s;
+  if (speaks_anew(model.settings.start_guard_s, arm, next)) next.arm_started_s = arm.received_s;
   next.arm_count = arm.count;
   next.arm_received_s = arm.received_s;
   next.arm_utime = arm.message->utime;
@@ -40,6 +47,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   facts.arm_known = inputs.arm.message != nullptr;
   if (facts.arm_known) {
     facts.arm_broke = !follow_arm(model, inputs.arm, now_s, next);
+    facts.arm_starting = now_s - next.arm_started_s < model.settings.start_guard_s;
     facts.arm_fresh = inputs.arm.fresh(now_s, ages.arm_state_s);
     facts.arm_lost = !inputs.arm.fresh(now_s, ages.arm_state_lost_s);
     if (facts.arm_lost) next.consistent_since_s = now_s;

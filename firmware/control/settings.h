@@ -99,6 +99,7 @@ struct Settings {
   bool wait_for_obstacles = true;  ///< false: no obstacle set ever received counts as no obstacles
   ObstacleTrust obstacle_trust;
   double obstacle_speed_bound_mps = 2.0;  ///< how fast an obstacle that is no longer reported may move
+  double start_guard_s = 0.0;             ///< so long after its first state an arm must not be sent any command
   double following_error_rad = 0.5;       ///< how far the command may lead the measured arm, per joint
 
   double period_s() const { return 1.0 / rate_hz; }

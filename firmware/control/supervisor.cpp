@@ -7,6 +7,7 @@ Supervision start(const Facts& facts, Mode mode, Fault fault) {
   if (!facts.arm_known) return {mode, fault, "waiting for the first arm state"};
   if (!facts.arm_fresh) return {mode, fault, "waiting for arm states; the last one is too old"};
   if (!facts.arm_consistent) return {mode, fault, "waiting for consistent arm states"};
+  if (facts.arm_starting) return {mode, fault, "waiting: the driver of the arm has only just started"};
   if (facts.stop) return {mode, fault, "stopping"};
   if (facts.rival) return {mode, fault, "waiting: another controller commands the arm"};
   if (!facts.obstacles_known) return {Mode::kWait, Fault::kNone, "waiting for the first obstacle set"};

@@ -10,6 +10,7 @@ struct Facts {
   bool arm_fresh = false;        ///< young enough to act on
   bool arm_lost = false;         ///< older than what a short gap may be
   bool arm_consistent = false;   ///< consistent for as long as it has to be
+  bool arm_starting = false;     ///< began to speak so recently that it must not hear a command
   bool arm_broke = false;        ///< this cycle's arm state contradicts the one before
   bool obstacles_known = false;  ///< a set was received, or none is needed
   bool obstacles_fresh = false;

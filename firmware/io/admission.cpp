@@ -1,35 +1,16 @@
 #include "firmware/io/admission.h"
 
-#include <cstring>
-#include <sidestep/joint_state_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 
 #include "firmware/control/jumps.h"
+#include "firmware/io/arm_reader.h"
+#include "firmware/io/message_bytes.h"
 
 namespace sidestep {
 namespace {
 
-constexpr size_t kHeaderBytes = 16;  // fingerprint and utime
-constexpr size_t kCountBytes = 4;
 constexpr size_t kObstacleBytes = 4 + 1 + 16 * 8;
-
-uint64_t big_endian(const uint8_t* bytes, int count) {
-  uint64_t value = 0;
-  for (int i = 0; i < count; ++i) value = value << 8 | bytes[i];
-  return value;
-}
-
-/// The count that follows the header, or -1 when the bytes are too few to have one.
-int64_t count_of(const void* bytes, size_t size) {
-  if (size < kHeaderBytes + kCountBytes) return -1;
-  return static_cast<int32_t>(big_endian(static_cast<const uint8_t*>(bytes) + kHeaderBytes, kCountBytes));
-}
-
-template <typename Message>
-bool has_fingerprint(const void* bytes, size_t size) {
-  return size >= 8 && big_endian(static_cast<const uint8_t*>(bytes), 8) == static_cast<uint64_t>(Message::getHash());
-}
 
 Vector3 vector(const double* xyz) {
   return Vector3(xyz[0], xyz[1], xyz[2]);
@@ -65,17 +46,18 @@ double old_place_s(const Settings& settings) {
 
 /// Decoded messages whose vectors keep their capacity from one message to the next.
 struct Admission::Scratch {
-  joint_state_t arm;
+  ArmReader arm;
   target_t target;
   obstacles_t obstacles;
   Jumps jumps;
 };
 
-Admission::Admission(int joints, const Settings& settings, bool arm_is_clock)
+Admission::Admission(int joints, const Settings& settings, bool arm_is_clock, Dialect dialect)
     : joints_(joints),
       ages_(settings.ages),
       arm_is_clock_(arm_is_clock),
-      scratch_(new Scratch{{}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, old_place_s(settings))}) {
+      scratch_(
+          new Scratch{{dialect, joints}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, old_place_s(settings))}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 
@@ -88,15 +70,7 @@ bool Admission::reject(const char* reason) {
 }
 
 bool Admission::admit(const void* bytes, size_t size, double now_s, ArmState& value) {
-  if (!has_fingerprint<joint_state_t>(bytes, size)) return reject("arm state of another type");
-  const int64_t count = count_of(bytes, size);
-  if (count != joints_) return reject("arm state with a wrong number of joints");
-  if (size != kHeaderBytes + kCountBytes + 16 * static_cast<size_t>(count)) return reject("arm state of wrong size");
-  joint_state_t& message = scratch_->arm;
-  if (message.decode(bytes, 0, static_cast<int>(size)) < 0) return reject("arm state that does not decode");
-  value.utime = message.utime;
-  value.position_rad = Eigen::Map<const Eigen::VectorXd>(message.joint_position.data(), joints_);
-  value.velocity_radps = Eigen::Map<const Eigen::VectorXd>(message.joint_velocity.data(), joints_);
+  if (const char* wrong = scratch_->arm.read(bytes, size, value)) return reject(wrong);
   if (!plausible(value, joints_)) return reject("arm state with impossible values");
   const double received_s = arm_is_clock_ ? static_cast<double>(value.utime) * 1e-6 : now_s;
   return arm_order_.accept(value.utime, received_s, ages_.arm_state_lost_s);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "firmware/control/inputs.h"
+#include "firmware/io/dialect.h"
 
 namespace sidestep {
 
@@ -13,7 +14,7 @@ namespace sidestep {
 class Admission {
  public:
   /// arm_is_clock: in lockstep time is the utime of the arm states, whatever now_s says about them.
-  Admission(int joints, const Settings& settings, bool arm_is_clock = false);
+  Admission(int joints, const Settings& settings, bool arm_is_clock = false, Dialect dialect = Dialect::kSidestep);
   ~Admission();
 
   /// Each returns whether `value` was filled; when not, its content is arbitrary. now_s: local time of receipt.

@@ -50,7 +50,7 @@ class Log {
       : file_(file),
         log_(file, "w"),
         channels_(config.channels),
-        encoder_(config.model.arm),
+        encoder_(config.model.arm, config.dialect),
         epoch_s_(wall_s() - newest_s) {
     if (!log_.good()) throw std::runtime_error(fmt::format("{}: {}", file, std::strerror(errno)));
   }

@@ -1,5 +1,7 @@
 #include "firmware/io/config.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <stdexcept>
 
@@ -147,6 +149,26 @@ void read_channels(Section section, Channels& channels) {
   section.finish();
 }
 
+/// x y z in m and roll pitch yaw in rad, as in a URDF.
+Eigen::Isometry3d read_pose(Section& section, const std::string& position_key, const std::string& angles_key) {
+  Vector3 position_m = Vector3::Zero(), rpy_rad = Vector3::Zero();
+  section.vector(position_key, position_m);
+  section.vector(angles_key, rpy_rad);
+  return Eigen::Translation3d(position_m) * Eigen::AngleAxisd(rpy_rad.z(), Vector3::UnitZ()) *
+         Eigen::AngleAxisd(rpy_rad.y(), Vector3::UnitY()) * Eigen::AngleAxisd(rpy_rad.x(), Vector3::UnitX());
+}
+
+void read_neighbours(Section section, bool wait_for_obstacles, Neighbours& neighbours) {
+  read_channel(section, "publish", neighbours.publish);
+  section.texts("listen", neighbours.listen);
+  for (const std::string& channel : neighbours.listen)
+    if (channel == neighbours.publish) section.fail("listen", "holds the channel that is published");
+  if (!neighbours.listen.empty() && !wait_for_obstacles)
+    section.fail("listen", "needs obstacles.wait_for_first: nothing moves before all neighbours are heard");
+  neighbours.world_from_base = read_pose(section, "base_position_m", "base_rpy_rad");
+  section.finish();
+}
+
 void read_blackbox(Section section, BlackboxSettings& blackbox) {
   section.number("seconds", blackbox.seconds, 1.0, 60.0);
   section.text("folder", blackbox.folder);
@@ -161,6 +183,18 @@ void read_foresight(Section section, ForesightSettings& foresight) {
   section.number("seed", seed, 0.0, 1e9);
   foresight.seed = static_cast<int64_t>(seed);
   section.finish();
+}
+
+void read_dialect(Section& root, Config& config) {
+  std::string dialect = "sidestep";
+  root.choice("dialect", dialect, {"sidestep", "iiwa"});
+  if (dialect != "iiwa") return;
+  if (config.model.arm.joints != kIiwaJoints)
+    root.fail("dialect", fmt::format("iiwa is for {} joints, the arm has {}", kIiwaJoints, config.model.arm.joints));
+  config.dialect = Dialect::kIiwa;
+  config.model.settings.start_guard_s = kIiwaStartGuard_s;
+  config.channels.arm_state = "IIWA_STATUS";
+  config.channels.arm_command = "IIWA_COMMAND";
 }
 
 Arm read_robot(Section robot, const std::string& config_file, const Overrides& overrides) {
@@ -198,12 +232,14 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   settings.law = law == "paper" ? Law::kPaper : Law::kSidestep;
 
   config.model.arm = read_robot(root.section("robot"), file, overrides);
+  read_dialect(root, config);
   read_limits(root.section("limits"), config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
   read_ages(root.section("ages"), settings.ages);
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
+  read_neighbours(root.section("neighbours"), settings.wait_for_obstacles, config.neighbours);
   read_blackbox(root.section("blackbox"), config.blackbox);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "firmware/control/cycle.h"
+#include "firmware/io/dialect.h"
 
 namespace sidestep {
 
@@ -14,6 +16,13 @@ struct Channels {
   std::string arm_command = "ARM_COMMAND";
   std::string controller_status = "CONTROLLER_STATUS";
   std::string loop_timing = "LOOP_TIMING";
+};
+
+/// Other arms in the same workspace; config section `neighbours:`. Links are told in one world frame.
+struct Neighbours {
+  std::string publish;              ///< channel for our own links; empty: they are not told
+  std::vector<std::string> listen;  ///< channels of the others' links
+  Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
 };
 
 /// Logs of the last seconds before a fault or a request; config section `blackbox:`.
@@ -34,7 +43,9 @@ struct Overrides {
 /// A configuration, complete and checked.
 struct Config {
   Model model;
+  Dialect dialect = Dialect::kSidestep;
   Channels channels;
+  Neighbours neighbours;
   BlackboxSettings blackbox;
   std::string file;  ///< what it was read from, with
   Overrides overrides;

@@ -131,6 +131,14 @@ void Section::per_joint(const std::string& key, int joints, JointVector& value) 
   for (int i = 0; i < joints; ++i) value[i] = to_number(key, node[i]);
 }
 
+void Section::vector(const std::string& key, Vector3& value) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (!node.IsSequence() || node.size() != 3) fail(key, "must be a list of 3 numbers");
+  for (int i = 0; i < 3; ++i) value[i] = to_number(key, node[i]);
+  if (!value.allFinite()) fail(key, "must be finite");
+}
+
 void Section::finish() const {
   std::set<std::string> seen;
   for (const auto& entry : node_) {

@@ -39,6 +39,9 @@ class Section {
 
   bool has(const std::string& key) const { return static_cast<bool>(node_[key]); }
 
+  /// A list of three finite numbers.
+  void vector(const std::string& key, Vector3& value);
+
   /// To be called last: throws for a key that nothing has asked for, or one that stands twice.
   void finish() const;
 

@@ -35,6 +35,8 @@ void CycleRunner::run(const Post& post, const Occasion& occasion) {
   kept.commanded = result.commanding || lockstep_;
   kept.command = result.command;
   if (kept.commanded) wire_.publish(kept.command, moment.utime, moment.seq);
+  const Latest<ArmState>& arm = moment.inputs.arm;
+  if (arm.fresh(moment.now_s, model_.settings.ages.arm_state_s)) wire_.publish(*arm.message, moment.utime);
 
   kept.report = result.report;
   kept.report.limiting |= standing_ | (blackbox_.failed() ? kLimitingNoBlackbox : kLimitingNothing);

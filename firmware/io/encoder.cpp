@@ -1,6 +1,7 @@
 #include "firmware/io/encoder.h"
 
 #include <array>
+#include <drake/lcmt_iiwa_command.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/loop_timing_t.hpp>
@@ -16,6 +17,10 @@ void copy(const Vector3& from, double* to) {
   Eigen::Map<Vector3>(to, 3) = from;
 }
 
+void copy(const JointVector& from, std::vector<double>& to) {
+  to.assign(from.data(), from.data() + from.size());
+}
+
 durations_t summary(const Histogram& histogram) {
   durations_t durations;
   durations.p50 = histogram.quantile_s(0.5);
@@ -29,7 +34,9 @@ durations_t summary(const Histogram& histogram) {
 
 struct Encoder::Messages {
   std::vector<std::string> shape_links;
+  Dialect dialect;
   joint_command_t command;
+  drake::lcmt_iiwa_command iiwa_command;
   controller_status_t status;
   loop_timing_t timing;
   std::array<uint8_t, kLargest_bytes> bytes;
@@ -41,11 +48,14 @@ struct Encoder::Messages {
   }
 };
 
-Encoder::Encoder(const Arm& arm) : messages_(std::make_unique<Messages>()) {
+Encoder::Encoder(const Arm& arm, Dialect dialect) : messages_(std::make_unique<Messages>()) {
   for (const LinkShape& shape : arm.shapes) messages_->shape_links.push_back(shape.link.substr(0, kLongestText));
-  messages_->command.num_joints = arm.joints;
-  messages_->command.joint_position.resize(static_cast<size_t>(arm.joints));
-  messages_->command.joint_velocity.resize(static_cast<size_t>(arm.joints));
+  messages_->dialect = dialect;
+  messages_->command.num_joints = messages_->iiwa_command.num_joints = arm.joints;
+  for (auto* per_joint : {&messages_->command.joint_position, &messages_->command.joint_velocity,
+                          &messages_->iiwa_command.joint_position})
+    per_joint->resize(static_cast<size_t>(arm.joints));
+  messages_->iiwa_command.num_torques = 0;  // it is moved by position alone
   messages_->status.nearest_link.reserve(kLongestText);
   messages_->status.message.reserve(2 * kLongestText);
 }
@@ -53,13 +63,17 @@ Encoder::Encoder(const Arm& arm) : messages_(std::make_unique<Messages>()) {
 Encoder::~Encoder() = default;
 
 Packet Encoder::encode(const Command& command, int64_t utime, int64_t seq) {
+  if (messages_->dialect == Dialect::kIiwa) {
+    drake::lcmt_iiwa_command& message = messages_->iiwa_command;
+    message.utime = utime;
+    copy(command.position_rad, message.joint_position);
+    return messages_->packet(message);
+  }
   joint_command_t& message = messages_->command;
   message.utime = utime;
   message.seq = seq;
-  for (int i = 0; i < message.num_joints; ++i) {
-    message.joint_position[static_cast<size_t>(i)] = command.position_rad[i];
-    message.joint_velocity[static_cast<size_t>(i)] = command.velocity_radps[i];
-  }
+  copy(command.position_rad, message.joint_position);
+  copy(command.velocity_radps, message.joint_velocity);
   return messages_->packet(message);
 }
 

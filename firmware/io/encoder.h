@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware/control/cycle.h"
+#include "firmware/io/dialect.h"
 #include "firmware/io/timing.h"
 
 namespace sidestep {
@@ -21,14 +22,14 @@ struct CycleRecord {
 
 /// The bytes of a message.
 struct Packet {
-  const uint8_t* bytes;
-  size_t size;
+  const uint8_t* bytes = nullptr;
+  size_t size = 0;
 };
 
 /// Values to wire formats, without allocating. A packet stays valid until the next one is made.
 class Encoder {
  public:
-  explicit Encoder(const Arm& arm);
+  explicit Encoder(const Arm& arm, Dialect dialect = Dialect::kSidestep);
   ~Encoder();
 
   Packet encode(const Command& command, int64_t utime, int64_t seq);

@@ -3,6 +3,7 @@
 #include "firmware/io/admission.h"
 #include "firmware/io/cycle_runner.h"
 #include "firmware/io/loop.h"
+#include "firmware/io/neighbourhood.h"
 #include "firmware/io/realtime.h"
 
 namespace sidestep {
@@ -16,14 +17,17 @@ class Lockstep {
   Lockstep(const Config& config, const std::string& lcm_url, Requests& requests)
       : blackbox_(config, requests.write_blackbox),
         adviser_(config.model, true),
-        wire_(lcm_url, config.channels, config.model.arm),
+        wire_(lcm_url, config),
         runner_(config, wire_, blackbox_, adviser_, true, kLimitingNothing),
         admission_(config.model.arm.joints, config.model.settings, true),
+        neighbourhood_(config),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
         stop_(requests.stop) {
     wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });
     wire_.on_target([this](const void* bytes, size_t size) { receive(bytes, size, target_); });
-    wire_.on_obstacles([this](const void* bytes, size_t size) { receive(bytes, size, *obstacles_); });
+    wire_.on_obstacles([this](const void* bytes, size_t size) { join(0, bytes, size); });
+    for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
+      wire_.on_neighbour(k, [this, k](const void* bytes, size_t size) { join(k + 1, bytes, size); });
   }
 
   LoopSummary run() {
@@ -34,7 +38,7 @@ class Lockstep {
       if (runner_.timing().cycles != cycles || !stop_) last_cycle_s = monotonic_s();
       if (monotonic_s() - last_cycle_s > kFarewell_s) break;
     }
-    return {runner_.timing(), admission_.rejected()};
+    return {runner_.timing(), rejected()};
   }
 
  private:
@@ -45,11 +49,12 @@ class Lockstep {
     Mail<Message> slots[2];
     int current = 0;
     bool arrived = false;
+    double age_s = 0.0;  ///< when it arrived
 
     Mail<Message>& mail() { return slots[current]; }
 
     const Mail<Message>& take(double now_s) {
-      if (arrived) mail().received_s = now_s;
+      if (arrived) mail().received_s = now_s - age_s;
       arrived = false;
       return mail();
     }
@@ -66,14 +71,22 @@ class Lockstep {
     return pending.arrived = true;
   }
 
+  void join(size_t part, const void* bytes, size_t size) {
+    const auto whole = neighbourhood_.join(part, bytes, size, now_s_);
+    if (whole && receive(whole->packet.bytes, whole->packet.size, *obstacles_)) obstacles_->age_s = whole->age_s;
+  }
+
+  int64_t rejected() const { return admission_.rejected() + neighbourhood_.rejected(); }
+
   void cycle(const void* bytes, size_t size) {
     if (!receive(bytes, size, arm_)) return;
     CycleRunner::Occasion occasion;
     occasion.utime = arm_.mail().message.utime;
     occasion.now_s = now_s_ = static_cast<double>(occasion.utime) * 1e-6;
     occasion.stop = stop_;
-    occasion.rejected_messages = admission_.rejected();
-    occasion.rejected_reason = admission_.last_reason();
+    occasion.rejected_messages = rejected();
+    const char* reason = neighbourhood_.last_reason();
+    occasion.rejected_reason = *reason ? reason : admission_.last_reason();
     runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, occasion);
   }
 
@@ -82,6 +95,7 @@ class Lockstep {
   Wire wire_;
   CycleRunner runner_;
   Admission admission_;
+  Neighbourhood neighbourhood_;
   Pending<ArmState> arm_;
   Pending<Target> target_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;

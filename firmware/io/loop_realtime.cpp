@@ -9,6 +9,7 @@
 #include "firmware/io/cycle_runner.h"
 #include "firmware/io/loop.h"
 #include "firmware/io/mailbox.h"
+#include "firmware/io/neighbourhood.h"
 #include "firmware/io/realtime.h"
 
 namespace sidestep {
@@ -21,10 +22,15 @@ constexpr double kLongestBraking_s = 5.0;
 /// The receiving side: checks what comes in and puts the newest valid message of each kind into its mailbox.
 class Receiver {
  public:
-  Receiver(Wire& wire, int joints, const Settings& settings) : wire_(wire), admission_(joints, settings) {
-    wire.on_arm_state([this](const void* bytes, size_t size) { post(bytes, size, arm); });
-    wire.on_target([this](const void* bytes, size_t size) { post(bytes, size, target); });
-    wire.on_obstacles([this](const void* bytes, size_t size) { post(bytes, size, obstacles); });
+  Receiver(Wire& wire, const Config& config)
+      : wire_(wire),
+        admission_(config.model.arm.joints, config.model.settings, false, config.dialect),
+        neighbourhood_(config) {
+    wire.on_arm_state([this](const void* bytes, size_t size) { post(bytes, size, monotonic_s(), arm); });
+    wire.on_target([this](const void* bytes, size_t size) { post(bytes, size, monotonic_s(), target); });
+    wire.on_obstacles([this](const void* bytes, size_t size) { join(0, bytes, size); });
+    for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
+      wire.on_neighbour(k, [this, k](const void* bytes, size_t size) { join(k + 1, bytes, size); });
     wire.on_foreign_command([this] { foreign_command_s = monotonic_s(); });
   }
 
@@ -40,23 +46,35 @@ class Receiver {
   std::atomic<const char*> rejected_reason{""};
 
  private:
-  template <typename Message>
-  void post(const void* bytes, size_t size, Mailbox<Mail<Message>>& mailbox) {
-    Mail<Message>& mail = mailbox.draft();
+  void join(size_t part, const void* bytes, size_t size) {
     const double now_s = monotonic_s();
-    if (admission_.admit(bytes, size, now_s, mail.message)) {
+    const auto whole = neighbourhood_.join(part, bytes, size, now_s);
+    if (whole) return post(whole->packet.bytes, whole->packet.size, now_s - whole->age_s, obstacles);
+    count_rejected();
+  }
+
+  template <typename Message>
+  void post(const void* bytes, size_t size, double received_s, Mailbox<Mail<Message>>& mailbox) {
+    Mail<Message>& mail = mailbox.draft();
+    if (admission_.admit(bytes, size, received_s, mail.message)) {
       const auto* first = static_cast<const uint8_t*>(bytes);
       mail.bytes.assign(first, first + size);
-      mail.received_s = now_s;
+      mail.received_s = received_s;
       mail.count = ++count_;
       mailbox.post();
     }
-    rejected_reason = admission_.last_reason();
-    rejected = admission_.rejected();
+    count_rejected();
+  }
+
+  void count_rejected() {
+    const char* reason = neighbourhood_.last_reason();
+    rejected_reason = *reason ? reason : admission_.last_reason();
+    rejected = admission_.rejected() + neighbourhood_.rejected();
   }
 
   Wire& wire_;
   Admission admission_;
+  Neighbourhood neighbourhood_;
   int64_t count_ = 0;
 };
 
@@ -124,8 +142,8 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   // LCM starts a thread at the first subscription; it and the receiver inherit the priority of this one.
   request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
 
-  Wire wire(lcm_url, config.channels, config.model.arm);
-  const auto receiver = std::make_unique<Receiver>(wire, config.model.arm.joints, config.model.settings);
+  Wire wire(lcm_url, config);
+  const auto receiver = std::make_unique<Receiver>(wire, config);
   CycleRunner runner(config, wire, blackbox, adviser, false, limiting);
   std::atomic<bool> end{false};
   std::thread receiving([&] { receiver->run(end); });

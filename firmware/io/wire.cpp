@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <lcm/lcm.h>
 
-#include <array>
+#include <deque>
 #include <stdexcept>
 
+#include "firmware/io/own_links.h"
 #include "firmware/io/own_messages.h"
 
 namespace sidestep {
@@ -31,17 +32,23 @@ int64_t utime_of(const void* bytes, size_t size) {
 struct Wire::Network {
   lcm_t* lcm = nullptr;
   Channels channels;
-  std::array<ByteHandler, 4> handlers;
+  Neighbours neighbours;
+  std::deque<ByteHandler> handlers;  // they stay where they are
   OwnMessages own_commands;
   Encoder encoder;
+  OwnLinks own_links;
 
-  Network(const Channels& the_channels, const Arm& arm) : channels(the_channels), encoder(arm) {}
+  explicit Network(const Config& config)
+      : channels(config.channels),
+        neighbours(config.neighbours),
+        encoder(config.model.arm, config.dialect),
+        own_links(config) {}
   ~Network() {
     if (lcm) lcm_destroy(lcm);
   }
 
-  void subscribe(const std::string& channel, ByteHandler& slot, ByteHandler handler) {
-    slot = std::move(handler);
+  void subscribe(const std::string& channel, ByteHandler handler) {
+    ByteHandler& slot = handlers.emplace_back(std::move(handler));
     // A channel is a regular expression to LCM; ours is a name.
     std::string pattern;
     for (char c : channel)
@@ -56,8 +63,7 @@ struct Wire::Network {
   }
 };
 
-Wire::Wire(const std::string& url, const Channels& channels, const Arm& arm)
-    : network_(std::make_unique<Network>(channels, arm)) {
+Wire::Wire(const std::string& url, const Config& config) : network_(std::make_unique<Network>(config)) {
   network_->lcm = lcm_create(url.empty() ? nullptr : url.c_str());
   if (!network_->lcm)
     throw std::runtime_error(fmt::format("LCM: cannot use the network '{}' (is there a multicast route?)",
@@ -67,20 +73,23 @@ Wire::Wire(const std::string& url, const Channels& channels, const Arm& arm)
 Wire::~Wire() = default;
 
 void Wire::on_arm_state(ByteHandler handler) {
-  network_->subscribe(network_->channels.arm_state, network_->handlers[0], std::move(handler));
+  network_->subscribe(network_->channels.arm_state, std::move(handler));
 }
 void Wire::on_target(ByteHandler handler) {
-  network_->subscribe(network_->channels.target, network_->handlers[1], std::move(handler));
+  network_->subscribe(network_->channels.target, std::move(handler));
 }
 void Wire::on_obstacles(ByteHandler handler) {
-  network_->subscribe(network_->channels.obstacles, network_->handlers[2], std::move(handler));
+  network_->subscribe(network_->channels.obstacles, std::move(handler));
+}
+void Wire::on_neighbour(size_t k, ByteHandler handler) {
+  network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }
 
 void Wire::on_foreign_command(std::function<void()> handler) {
   const auto listen = [this, handler = std::move(handler)](const void* bytes, size_t size) {
     if (!network_->own_commands.has(utime_of(bytes, size))) handler();
   };
-  network_->subscribe(network_->channels.arm_command, network_->handlers[3], listen);
+  network_->subscribe(network_->channels.arm_command, listen);
 }
 
 bool Wire::receive(int timeout_ms) {
@@ -94,6 +103,11 @@ void Wire::publish(const Command& command, int64_t utime, int64_t seq) {
 
 void Wire::publish(const Report& report, const CycleRecord& record) {
   network_->send(network_->channels.controller_status, network_->encoder.encode(report, record));
+}
+
+void Wire::publish(const ArmState& arm, int64_t utime) {
+  const std::string& channel = network_->neighbours.publish;
+  if (!channel.empty()) network_->send(channel, network_->own_links.encode(arm, utime));
 }
 
 void Wire::publish(const Timing& timing, int64_t utime) {

@@ -16,13 +16,15 @@ using ByteHandler = std::function<void(const void* bytes, size_t size)>;
 class Wire {
  public:
   /// url empty: LCM's own default. Throws std::runtime_error when the network cannot be used.
-  Wire(const std::string& url, const Channels& channels, const Arm& arm);
+  Wire(const std::string& url, const Config& config);
   ~Wire();
 
   /// Handlers run inside receive(), in the order of arrival, and must not throw. Call before the first receive().
   void on_arm_state(ByteHandler handler);
   void on_target(ByteHandler handler);
   void on_obstacles(ByteHandler handler);
+  /// Links of the k-th neighbour, k from 0.
+  void on_neighbour(size_t k, ByteHandler handler);
   /// Commands on our own command channel that this Wire has not sent.
   void on_foreign_command(std::function<void()> handler);
 
@@ -32,6 +34,8 @@ class Wire {
   /// Send without allocating; may be called from another thread than receive().
   void publish(const Command& command, int64_t utime, int64_t seq);
   void publish(const Report& report, const CycleRecord& record);
+  /// Our own links, if anybody is to be told.
+  void publish(const ArmState& arm, int64_t utime);
   void publish(const Timing& timing, int64_t utime);
 
  private:

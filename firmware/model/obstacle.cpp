@@ -2,6 +2,14 @@
 
 namespace sidestep {
 
+Obstacle transformed(const Eigen::Isometry3d& b_from_a, const Obstacle& obstacle) {
+  const Capsule& capsule = obstacle.capsule;
+  return {obstacle.id,
+          {b_from_a * capsule.start, b_from_a * capsule.end, capsule.radius_m},
+          b_from_a.linear() * obstacle.velocity_mps,
+          b_from_a.linear() * obstacle.angular_velocity_radps};
+}
+
 Capsule moved(const Obstacle& obstacle, double dt_s) {
   const Capsule& capsule = obstacle.capsule;
   const Vector3 shift = obstacle.velocity_mps * dt_s;

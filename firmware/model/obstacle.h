@@ -22,6 +22,9 @@ struct ObstacleSet {
   std::array<Obstacle, kMaxObstacles> obstacles;
 };
 
+/// The obstacle in frame a as seen from frame b; the frames do not move against each other.
+Obstacle transformed(const Eigen::Isometry3d& b_from_a, const Obstacle& obstacle);
+
 /// Where the obstacle is after dt_s at constant linear and angular velocity.
 Capsule moved(const Obstacle& obstacle, double dt_s);
 

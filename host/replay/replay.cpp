@@ -34,8 +34,8 @@ class Rerun {
  public:
   explicit Rerun(const Config& config)
       : config_(config),
-        admission_(config.model.arm.joints, config.model.settings),
-        encoder_(config.model.arm),
+        admission_(config.model.arm.joints, config.model.settings, false, config.dialect),
+        encoder_(config.model.arm, config.dialect),
         obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
 
   /// Returns what is wrong with the event, or "".

@@ -59,8 +59,14 @@ void a_bad_config_ends_with_code_2_and_one_line_and_publishes_nothing(void**) {
 }
 
 void wrong_arguments_end_with_code_2(void**) {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"--law", "chaos"}, {"--no-such-option"}, {"--config"}, {"stray"}, {}, {"--urdf", "urdf/lwa3.urdf"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--law", "chaos"},
+                                             {"--config", "firmware/config/iiwa14-drake.yaml", "--lockstep"},
+                                             {"--no-such-option"},
+                                             {"--config"},
+                                             {"stray"},
+                                             {},
+                                             {"--urdf", "urdf/lwa3.urdf"}}) {
     Process process(controller(arguments));
     check(process.wait(kLimit_s) == 2, "'%s' ...: %s", arguments.empty() ? "" : arguments[0].c_str(),
           process.output().c_str());

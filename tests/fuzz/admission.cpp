@@ -11,7 +11,7 @@ namespace {
 constexpr int kJoints = 7;
 
 struct Gate {
-  Admission admission{kJoints, Settings{}};
+  Admission admission{kJoints, Settings{}}, iiwa{kJoints, Settings{}, false, Dialect::kIiwa};
   ArmState arm;
   Target target;
   std::unique_ptr<ObstacleSet> obstacles = std::make_unique<ObstacleSet>();
@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static Gate gate;  // kept, so that messages follow each other as in life
   if (size == 0) return 0;
   gate.now_s += 0.01;
-  const uint8_t channel = data[0] % 3;
+  const uint8_t channel = data[0] % 4;
   ++data, --size;
   if (channel == 0 && gate.admission.admit(data, size, gate.now_s, gate.arm)) require(plausible(gate.arm, kJoints));
   if (channel == 1 && gate.admission.admit(data, size, gate.now_s, gate.target)) require(plausible(gate.target));
@@ -36,5 +36,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     require(gate.obstacles->count >= 0 && gate.obstacles->count <= kMaxObstacles);
     for (int i = 0; i < gate.obstacles->count; ++i) require(plausible(gate.obstacles->obstacles[i]));
   }
+  if (channel == 3 && gate.iiwa.admit(data, size, gate.now_s, gate.arm)) require(plausible(gate.arm, kJoints));
   return 0;
 }

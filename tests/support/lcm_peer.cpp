@@ -14,11 +14,11 @@ std::string private_lcm_url(int number) {
   return "udpm://239.255.76." + std::to_string(67 + number) + ":" + std::to_string(port) + "?ttl=0";
 }
 
-LcmPeer::LcmPeer() : lcm_(private_lcm_url()) {
+LcmPeer::LcmPeer(const std::string& suffix) : lcm_(private_lcm_url()) {
   send_to(private_lcm_url());
   check(lcm_.good(), "no LCM at %s", private_lcm_url().c_str());
-  lcm_.subscribe("ARM_COMMAND", &LcmPeer::on_command, this)->setQueueCapacity(10000);
-  lcm_.subscribe("CONTROLLER_STATUS", &LcmPeer::on_status, this)->setQueueCapacity(10000);
+  lcm_.subscribe("ARM_COMMAND" + suffix, &LcmPeer::on_command, this)->setQueueCapacity(10000);
+  lcm_.subscribe("CONTROLLER_STATUS" + suffix, &LcmPeer::on_status, this)->setQueueCapacity(10000);
 }
 
 void LcmPeer::send_bytes(const std::string& channel, const Bytes& bytes) {

@@ -18,7 +18,8 @@ std::string private_lcm_url(int number = 0);
 /// The other end of the controller's wire: sends what an arm and a world would, keeps all that comes back.
 class LcmPeer {
  public:
-  LcmPeer();
+  /// suffix: of the channels that it hears.
+  explicit LcmPeer(const std::string& suffix = "");
 
   template <typename Message>
   void send(const std::string& channel, const Message& message) {

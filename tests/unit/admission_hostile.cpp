@@ -1,5 +1,6 @@
 #include "firmware/io/admission.h"
 #include "tests/support/check.h"
+#include "tests/support/iiwa_driver.h"
 #include "tests/support/messages.h"
 #include "tests/support/random.h"
 
@@ -27,6 +28,7 @@ struct Channel {
   Bytes good;
   bool (*admit)(Admission&, const void*, size_t);
   bool (*sane)();
+  Dialect dialect = Dialect::kSidestep;
 };
 
 target_t turning_target() {
@@ -60,11 +62,14 @@ std::vector<Channel> channels() {
          for (int i = 0; all && i < set.count; ++i) all = plausible(set.obstacles[static_cast<size_t>(i)]);
          return all;
        }},
+      {"iiwa status", encoded(test::iiwa_status(7, q_rad, qd_radps, q_rad)),
+       [](Admission& gate, const void* bytes, size_t size) { return gate.admit(bytes, size, 0.0, arm); },
+       [] { return plausible(arm, kJoints) && arm.held_rad.allFinite(); }, Dialect::kIiwa},
   };
 }
 
 bool accepts(const Channel& channel, const Bytes& bytes) {
-  Admission gate(kJoints, Settings());
+  Admission gate(kJoints, Settings(), false, channel.dialect);
   // On the heap and to the byte, so that a read beyond the end is seen by whoever watches the heap.
   const Bytes exact(bytes.begin(), bytes.end());
   const bool accepted = channel.admit(gate, exact.data(), exact.size());
@@ -145,10 +150,12 @@ void a_message_on_the_wrong_channel_is_rejected(void**) {
 }
 
 /// Every double of every message in turn, but for those that are not used: a sphere's quaternion, its other sizes and
-/// its rotation. (A capsule's third size is not used either, but has to be finite.)
+/// its rotation, and all of an iiwa's beyond the measured positions and velocities. (A capsule's third size is not used
+/// either, but has to be finite.)
 void no_double_may_be_impossible(void**) {
   const size_t capsule_at = 20, sphere_at = capsule_at + 133, numbers = 5;
   const auto unused = [&](const Channel& channel, size_t at) {
+    if (std::string(channel.name) == "iiwa status") return at >= 20 + 8 * 2 * kJoints;
     if (std::string(channel.name) != "obstacles" || at < sphere_at) return false;
     const size_t number = (at - sphere_at - numbers) / 8;  // position 3, quaternion 4, size 3, velocity 3, rotation 3
     return (number >= 3 && number < 7) || number == 8 || number == 9 || number >= 13;
@@ -171,8 +178,8 @@ void no_double_may_be_impossible(void**) {
       }
     }
   }
-  check(tried == 6 * (14 + 13 + 31), "%d doubles tried", tried);
-  check(ignored == 6 * 9, "%d ignored", ignored);
+  check(tried == 6 * (14 + 13 + 31 + 49), "%d doubles tried", tried);
+  check(ignored == 6 * (9 + 35), "%d ignored", ignored);
 }
 
 void obstacles_that_cannot_be_are_rejected(void**) {

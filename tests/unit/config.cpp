@@ -85,6 +85,9 @@ void every_word_arrives_where_it_belongs(void**) {
   assert_true(load("paper: {tool_velocity: measured}").model.settings.paper.tool_velocity == ToolVelocity::kMeasured);
   assert_false(load("obstacles: {wait_for_first: false}").model.settings.wait_for_obstacles);
   assert_true(load("obstacles: {wait_for_first: true}").model.settings.wait_for_obstacles);
+  assert_true(load("").dialect == Dialect::kSidestep);
+  assert_true(load("dialect: sidestep").dialect == Dialect::kSidestep);
+  assert_true(load("dialect: iiwa").dialect == Dialect::kIiwa);
   const Channels channels =
       load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F}")
           .channels;
@@ -92,7 +95,20 @@ void every_word_arrives_where_it_belongs(void**) {
                        channels.controller_status + channels.loop_timing)
                           .c_str(),
                       "ABCDEF");
+  const Neighbours neighbours =
+      load("neighbours: {publish: A, listen: [B, C], base_position_m: [1, 2, 3], base_rpy_rad: [0, 0, 1.5]}")
+          .neighbours;
+  assert_string_equal((neighbours.publish + neighbours.listen[0] + neighbours.listen[1]).c_str(), "ABC");
+  check_near(neighbours.world_from_base * Vector3(1, 0, 0), Vector3(1 + std::cos(1.5), 2 + std::sin(1.5), 3), 1e-12);
   assert_string_equal(load("blackbox: {folder: here}").blackbox.folder.c_str(), "here");
+}
+
+void a_dialect_brings_its_channels_and_its_patience(void**) {
+  const Config iiwa = load("dialect: iiwa\nchannels: {arm_command: MINE}");
+  assert_string_equal(iiwa.channels.arm_state.c_str(), "IIWA_STATUS");
+  assert_string_equal(iiwa.channels.arm_command.c_str(), "MINE");
+  check_near(iiwa.model.settings.start_guard_s, 0.25, 0);
+  check_near(load("").model.settings.start_guard_s, 0.0, 0);
 }
 
 void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
@@ -181,6 +197,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_number_arrives_where_it_belongs),
       cmocka_unit_test(every_word_arrives_where_it_belongs),
+      cmocka_unit_test(a_dialect_brings_its_channels_and_its_patience),
       cmocka_unit_test(the_lwa3_file_loads_and_says_what_the_defaults_say),
       cmocka_unit_test(the_papers_parameters_start_from_the_values_written_down),
       cmocka_unit_test(limits_come_from_the_config_before_the_urdf),

@@ -39,6 +39,7 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       // the wrong kind
       {"law: 7", "law"},
       {"law: [paper]", "law"},
+      {"dialect: kuka", "dialect"},
       {"paper: 3", "paper"},
       {"paper: [1, 2]", "paper"},
       {"paper: {k_pos_per_s2: fast}", "paper.k_pos_per_s2"},
@@ -51,6 +52,11 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"obstacles: {wait_for_first: 1}", "obstacles.wait_for_first"},
       {"channels: {target: [A]}", "channels.target"},
       {"channels: {target: \"\"}", "channels.target"},
+      {"neighbours: {listen: A}", "neighbours.listen"},
+      {"neighbours: {publish: A, listen: [B, A]}", "neighbours.listen"},
+      {"neighbours: {listen: [A]}\nobstacles: {wait_for_first: false}", "neighbours.listen"},
+      {"neighbours: {base_position_m: [1, 2]}", "neighbours.base_position_m"},
+      {"neighbours: {base_rpy_rad: [1, 2, .inf]}", "neighbours.base_rpy_rad"},
       // out of range
       {"paper: {k_pos_per_s2: .nan}", "paper.k_pos_per_s2"},
       {"paper: {k_pos_per_s2: .inf}", "paper.k_pos_per_s2"},
@@ -113,6 +119,7 @@ void a_bad_robot_is_refused_with_one_line(void**) {
       {"robot: urdf/lwa3.urdf", "robot"},
       {"robot: {urdf: \"a\\nb\", base: base_link, tip: tool}", "robot.urdf"},
       {"robot: {urdf: [], base: base_link, tip: tool}", "robot.urdf"},
+      {"robot: {urdf: tests/data/arm6.urdf, base: foot, tip: tip}\ndialect: iiwa", "dialect"},
   };
   int wrong = 0;
   for (const auto& bad : cases) {

@@ -1,3 +1,5 @@
+#include <drake/lcmt_iiwa_command.hpp>
+#include <drake/lcmt_iiwa_status.hpp>
 #include <drake/lcmt_viewer_draw.hpp>
 #include <drake/lcmt_viewer_load_robot.hpp>
 
@@ -10,9 +12,15 @@ void the_viewers_layouts_are_those_of_drake(void**) {
   assert_true(static_cast<uint64_t>(drake::lcmt_viewer_draw::getHash()) == 0x414f0bfe5b2f4244);
 }
 
+void the_iiwas_layouts_are_those_of_drake(void**) {
+  assert_true(static_cast<uint64_t>(drake::lcmt_iiwa_command::getHash()) == 0xddc7c7738c815334);
+  assert_true(static_cast<uint64_t>(drake::lcmt_iiwa_status::getHash()) == 0xf16fb804284abca3);
+}
+
 }  // namespace
 
 int main() {
-  const CMUnitTest tests[] = {cmocka_unit_test(the_viewers_layouts_are_those_of_drake)};
+  const CMUnitTest tests[] = {cmocka_unit_test(the_viewers_layouts_are_those_of_drake),
+                              cmocka_unit_test(the_iiwas_layouts_are_those_of_drake)};
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

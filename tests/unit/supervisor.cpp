@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr int kFacts = 12;
+constexpr int kFacts = 13;
 static_assert(sizeof(Facts) == kFacts, "a new fact belongs into facts_of()");
 const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
 
@@ -20,6 +20,7 @@ Facts facts_of(unsigned bits) {
                              &facts.arm_fresh,
                              &facts.arm_lost,
                              &facts.arm_consistent,
+                             &facts.arm_starting,
                              &facts.arm_broke,
                              &facts.obstacles_known,
                              &facts.obstacles_fresh,
@@ -85,7 +86,7 @@ void nothing_moves_without_a_fresh_arm_state(void**) {
 void nothing_starts_without_consistent_arm_states_and_known_obstacles(void**) {
   check_always("start", [](const Supervision& last, const Facts& f, const auto& next) {
     const bool starts = (last.mode == Mode::kWait || last.mode == Mode::kFault) && moves(next.mode);
-    return !starts || (f.arm_known && f.arm_fresh && f.arm_consistent && f.obstacles_known);
+    return !starts || (f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && f.obstacles_known);
   });
 }
 
@@ -107,7 +108,8 @@ void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
 void a_fault_lasts_until_the_arm_is_consistent_again(void**) {
   check_always("latched", [](const Supervision& last, const Facts& f, const auto& next) {
     if (last.mode != Mode::kFault || f.arm_broke || f.arm_lost) return true;
-    if (f.arm_known && f.arm_fresh && f.arm_consistent && !f.stop && !f.rival) return next.mode != Mode::kFault;
+    const bool ready = f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting;
+    if (ready && !f.stop && !f.rival) return next.mode != Mode::kFault;
     return next.mode == Mode::kFault && next.fault == last.fault;
   });
 }
@@ -151,7 +153,7 @@ void every_mode_can_be_reached_and_says_so_in_words(void**) {
     return next.message && *next.message && std::string(next.message) != "before";
   });
   assert_int_equal(reached.size(), 5);
-  check(messages.size() >= 14, "%zu messages", messages.size());
+  check(messages.size() >= 15, "%zu messages", messages.size());
 }
 
 /// The life of a run, step by step.

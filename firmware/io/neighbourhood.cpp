@@ -1,0 +1,86 @@
+#include "firmware/io/neighbourhood.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/io/admission.h"
+#include "firmware/io/obstacle_encoder.h"
+
+namespace sidestep {
+namespace {
+
+// Obstacle 3 of neighbour 2 is called -20003.
+constexpr int kIdsOfANeighbour = 10000;
+
+/// Jumps are looked for in the whole.
+Settings without_old_places(Settings settings) {
+  settings.ages.old_place_s = 0.0;
+  return settings;
+}
+
+}  // namespace
+
+struct Neighbourhood::Part {
+  Part(const Config& config, const Eigen::Isometry3d& from)
+      : gate(config.model.arm.joints, without_old_places(config.model.settings)), base_from_part(from) {}
+
+  Admission gate;
+  Eigen::Isometry3d base_from_part;
+  ObstacleSet set, draft;
+  double received_s = -HUGE_VAL;
+};
+
+Neighbourhood::Neighbourhood(const Config& config) : limit_s_(config.model.settings.ages.obstacles_s) {
+  const Neighbours& neighbours = config.neighbours;
+  if (neighbours.listen.empty()) return;
+  parts_.push_back(std::make_unique<Part>(config, Eigen::Isometry3d::Identity()));
+  for (size_t k = 0; k < neighbours.listen.size(); ++k)
+    parts_.push_back(std::make_unique<Part>(config, neighbours.world_from_base.inverse()));
+  whole_ = std::make_unique<ObstacleEncoder>(kMaxObstacles);
+}
+
+Neighbourhood::~Neighbourhood() = default;
+
+std::optional<Neighbourhood::Whole> Neighbourhood::join(size_t number, const void* bytes, size_t size, double now_s) {
+  if (parts_.empty()) return Whole{{static_cast<const uint8_t*>(bytes), size}, 0.0};
+  Part& part = *parts_[number];
+  const bool admitted = part.gate.admit(bytes, size, now_s, part.draft);
+  if (!admitted) reason_ = part.gate.last_reason();
+  if (!admitted) return {};
+  std::copy_n(part.draft.obstacles.begin(), part.draft.count, part.set.obstacles.begin());
+  part.set.count = part.draft.count;
+  part.received_s = now_s;
+
+  const double at_s = oldest_s();
+  if (!(now_s - at_s <= limit_s_)) return {};
+  utime_ = std::max(utime_ + 1, static_cast<int64_t>(now_s * 1e6));
+  whole_->begin(utime_);
+  for (size_t k = 0; k < parts_.size(); ++k) add(*parts_[k], static_cast<int>(k), at_s);
+  const Packet packet = whole_->finish();
+  if (packet.size > 0) return Whole{packet, now_s - at_s};
+  ++too_many_;
+  reason_ = "more obstacles than a set holds";
+  return {};
+}
+
+double Neighbourhood::oldest_s() const {
+  const auto older = [](const auto& a, const auto& b) { return a->received_s < b->received_s; };
+  return (*std::min_element(parts_.begin(), parts_.end(), older))->received_s;
+}
+
+void Neighbourhood::add(const Part& part, int number, double at_s) {
+  for (int i = 0; i < part.set.count; ++i) {
+    Obstacle obstacle = transformed(part.base_from_part, part.set.obstacles[static_cast<size_t>(i)]);
+    obstacle.capsule = moved(obstacle, at_s - part.received_s);
+    if (number > 0) obstacle.id = -(number * kIdsOfANeighbour + i);
+    whole_->add(obstacle);
+  }
+}
+
+int64_t Neighbourhood::rejected() const {
+  int64_t sum = too_many_;
+  for (const auto& part : parts_) sum += part->gate.rejected();
+  return sum;
+}
+
+}  // namespace sidestep
