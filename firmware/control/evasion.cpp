@@ -41,11 +41,8 @@ double clearance_at(const Surroundings& now, const Threats& threats, const Joint
     if (shape.body > 0) links[count++] = placed(posture, shape);
   double least_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < threats.count; ++i) {
-    const Capsule then = moved(now.obstacles.set->obstacles[threats.obstacles[i]], now.obstacles.age_s + time_s);
-    for (int l = 0; l < count; ++l) {
-      const NearestPoints points = nearest_on_axes(links[l], then);
-      least_m = std::min(least_m, (points.a - points.b).norm() - links[l].radius_m - then.radius_m);
-    }
+    const Obstacle then = now.obstacles.present(threats.obstacles[i], time_s);
+    for (int l = 0; l < count; ++l) least_m = std::min(least_m, surface_distance_m(links[l], then, least_m));
   }
   return least_m;
 }

@@ -24,12 +24,10 @@ Vector3 repulsion(const PaperGains& gains, const Vector3& obstacle_position_m, c
 Vector3 repulsion(const PaperGains& gains, const ObstacleView& view, const Vector3& tool_position_m,
                   const Vector3& tool_velocity_mps) {
   Vector3 force = Vector3::Zero();
-  if (!view.set) return force;
-  for (int i = 0; i < view.set->count; ++i) {
-    const Obstacle& obstacle = view.set->obstacles[i];
-    const Capsule present = moved(obstacle, view.age_s);
-    const Vector3 nearest = nearest_on_segment(present.start, present.end, tool_position_m);
-    force += repulsion(gains, nearest, obstacle.velocity_mps, tool_position_m, tool_velocity_mps);
+  const Capsule tool{tool_position_m, tool_position_m, 0.0};
+  for (int i = 0; i < view.count(); ++i) {
+    const Vector3 nearest = measure_pair(tool, view.present(i)).on_obstacle;
+    force += repulsion(gains, nearest, view.at(i).velocity_mps, tool_position_m, tool_velocity_mps);
   }
   return force;
 }
