@@ -9,9 +9,9 @@ namespace {
 
 /// How near an obstacle comes to the base on its way, m.
 double nearest_to_base(const Obstacle& obstacle, double horizon_s) {
-  const Vector3 centre = obstacle.centre();
+  const Vector3 centre = obstacle.capsule.centre();
   const Vector3 on_way = nearest_on_segment(centre, centre + obstacle.velocity_mps * horizon_s, Vector3::Zero().eval());
-  return on_way.norm() - 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm() - obstacle.capsule.radius_m;
+  return on_way.norm() - obstacle.capsule.extent_m();
 }
 
 /// Keeps the obstacles that come nearest.

@@ -34,7 +34,7 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 Box box_of(const Obstacle& obstacle) {
   const Vector3 half_length = 0.5 * (obstacle.capsule.end - obstacle.capsule.start);
   const double half_length_m = half_length.norm(), half_width_m = obstacle.half_width_m.norm();
-  Box box{obstacle.centre(), {}, {half_length_m, half_width_m, obstacle.half_height_m}};
+  Box box{obstacle.capsule.centre(), {}, {half_length_m, half_width_m, obstacle.half_height_m}};
   box.axes.col(0) = half_length / half_length_m;
   box.axes.col(1) = obstacle.half_width_m / half_width_m;
   box.axes.col(2) = box.axes.col(0).cross(box.axes.col(1));
@@ -46,7 +46,7 @@ double rounding_m(const Obstacle& obstacle) {
 }
 
 Vector3 velocity_at(const Obstacle& obstacle, const Vector3& point) {
-  return obstacle.velocity_mps + obstacle.angular_velocity_radps.cross(point - obstacle.centre());
+  return obstacle.velocity_mps + obstacle.angular_velocity_radps.cross(point - obstacle.capsule.centre());
 }
 
 Obstacle moved(const Obstacle& obstacle, double dt_s) {
@@ -60,7 +60,7 @@ Obstacle moved(const Obstacle& obstacle, double dt_s) {
     return later;
   }
   const Matrix3 rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-  const Vector3 centre = obstacle.centre();
+  const Vector3 centre = obstacle.capsule.centre();
   const Vector3 half = rotation * (capsule.end - centre);
   capsule.start = centre - half + shift;
   capsule.end = centre + half + shift;

@@ -18,7 +18,6 @@ struct Obstacle {
   double half_height_m = 0.0;              ///< half its least edge
 
   bool is_box() const { return !half_width_m.isZero(0.0); }
-  Vector3 centre() const { return 0.5 * (capsule.start + capsule.end); }
 };
 
 /// The full set of obstacles at one instant. Large: lives in a mailbox or on the heap, never on a stack.

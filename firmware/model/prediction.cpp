@@ -12,9 +12,7 @@ struct Ball {
   Vector3 centre;
   double radius_m;
 
-  explicit Ball(const Capsule& capsule)
-      : centre(0.5 * (capsule.start + capsule.end)),
-        radius_m(0.5 * (capsule.end - capsule.start).norm() + capsule.radius_m) {}
+  explicit Ball(const Capsule& capsule) : centre(capsule.centre()), radius_m(capsule.extent_m()) {}
 };
 
 }  // namespace
