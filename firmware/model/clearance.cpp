@@ -44,16 +44,14 @@ class Gatherer {
         limit_m_(reach.range_m),
         clearance_(clearance) {}
 
-  void gather(int index) {
-    const Obstacle& obstacle = view_.at(index);
+  void gather(const Obstacle& obstacle, int index, double growth_m) {
     const Capsule& reported = obstacle.capsule;
     const Vector3 axis = reported.end - reported.start;
-    const double half_length_m = axis.isZero(0.0) ? 0.0 : 0.5 * axis.norm();
+    const Length length = axis.isZero(0.0) ? Length{} : length_of(obstacle, 0.5 * axis.norm());
     const Vector3 centre = reported.start + 0.5 * axis + obstacle.velocity_mps * view_.age_s;
-    const double travel_m = obstacle.velocity_mps.norm() * horizon_s_ + swing_m(obstacle, half_length_m);
-    const double core_m = half_length_m > 0.0 && obstacle.is_box() ? reported.radius_m : 0.0;
-    const double radii_m = links_.radius_m + reported.radius_m + view_.growth_of(index);
-    if (links_.distance2_m2(centre) > square(half_length_m + reach_m(radii_m, core_m, travel_m))) return;
+    const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
+    const double radii_m = links_.radius_m + reported.radius_m + growth_m;
+    if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
 
     const Obstacle present = view_.present(index);
     for (int s = 0; s < static_cast<int>(arm_.shapes.size()); ++s) {
@@ -75,10 +73,15 @@ class Gatherer {
   }
 
  private:
-  /// What turning adds to the way of the fastest point.
-  double swing_m(const Obstacle& obstacle, double half_length_m) const {
-    if (half_length_m == 0.0) return 0.0;
-    return obstacle.angular_velocity_radps.norm() * (half_length_m + obstacle.capsule.radius_m) * horizon_s_;
+  /// What an obstacle has that is no sphere.
+  struct Length {
+    double half_m = 0.0;     ///< half its axis
+    double core_m = 0.0;     ///< how far a box reaches beyond its axis
+    double swing_mps = 0.0;  ///< what turning adds to the speed of its fastest point
+  };
+  static Length length_of(const Obstacle& obstacle, double half_m) {
+    const double radius_m = obstacle.capsule.radius_m;
+    return {half_m, obstacle.is_box() ? radius_m : 0.0, obstacle.angular_velocity_radps.norm() * (half_m + radius_m)};
   }
 
   /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the
@@ -118,7 +121,8 @@ Obstacle ObstacleView::present(int index, double later_s) const {
 Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
   Gatherer gatherer(arm, posture, view, reach, clearance);
-  for (int o = 0; o < view.count(); ++o) gatherer.gather(o);
+  for (int o = 0; o < view.reported(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
+  for (int o = view.reported(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;
 }
 
