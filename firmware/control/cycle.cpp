@@ -156,12 +156,11 @@ void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
   report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
 }
 
-void report_clearance(const Clearance& clearance, const Latest<ObstacleSet>& obstacles, Report& report) {
-  if (!obstacles.message) return;
+void report_clearance(const Clearance& clearance, const ObstacleView& obstacles, Report& report) {
+  if (!obstacles.set && obstacles.count() == 0) return;
   report.clearance_m = clearance.nearest.distance_m;
   report.nearest_shape = clearance.nearest.shape;
-  if (clearance.nearest.obstacle >= 0)
-    report.nearest_obstacle = obstacles.message->obstacles[clearance.nearest.obstacle].id;
+  if (clearance.nearest.obstacle >= 0) report.nearest_obstacle = obstacles.at(clearance.nearest.obstacle).id;
 }
 
 }  // namespace
@@ -183,7 +182,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
 
     const Posture posture = forward(model.arm, arm.position_rad);
     passed(Stage::kObserve);
-    const ObstacleView obstacles = view_obstacles(model.settings, inputs.obstacles, now_s);
+    const ObstacleView obstacles = view_obstacles(model, inputs.obstacles, now_s);
     const Reach reach{model.settings.shield.range_m, model.settings.shield.pass_horizon_s};
     const Clearance clearance = measure_clearance(model.arm, posture, obstacles, reach);
     passed(Stage::kClearance);
@@ -203,7 +202,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);
     report_tool(posture, arm, report);
-    report_clearance(clearance, inputs.obstacles, report);
+    report_clearance(clearance, obstacles, report);
     if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();
     report.shield_correction_radps = (safe - wish.velocity_radps).norm();
     if (report.shield_correction_radps > 1e-6) report.limiting |= kLimitingShield;

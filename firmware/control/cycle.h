@@ -18,6 +18,7 @@ struct Model {
   Arm arm;
   Settings settings;
   std::vector<std::pair<int, int>> self_pairs;  ///< link shapes that must keep clear of each other
+  std::vector<Obstacle> surroundings;           ///< always there, at rest, whatever is reported
 };
 
 /// What one cycle is given. Messages are already checked (io/admission); they stay valid during the call.

@@ -9,7 +9,7 @@ constexpr int kMostWays = 4;         // 2^4 combinations of sides
 constexpr int kMostObstacles = 16;   // looked at in a rollout
 constexpr double kStep_s = 0.05;     // of a rollout
 constexpr double kAfter_s = 0.2;     // looked at beyond the last approach
-constexpr double kMissWeight = 1e3;  // cost of a metre of missing clearance
+constexpr double kMissWeight = 1e4;  // cost of a metre of missing clearance
 
 /// Another side has to be better by this much, or the arm would dither between two.
 constexpr double kClearlyBetter = 0.8;
@@ -41,11 +41,8 @@ double clearance_at(const Surroundings& now, const Threats& threats, const Joint
     if (shape.body > 0) links[count++] = placed(posture, shape);
   double least_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < threats.count; ++i) {
-    const Capsule then = moved(now.obstacles.set->obstacles[threats.obstacles[i]], now.obstacles.age_s + time_s);
-    for (int l = 0; l < count; ++l) {
-      const NearestPoints points = nearest_on_axes(links[l], then);
-      least_m = std::min(least_m, (points.a - points.b).norm() - links[l].radius_m - then.radius_m);
-    }
+    const Obstacle then = now.obstacles.present(threats.obstacles[i], time_s);
+    for (int l = 0; l < count; ++l) least_m = std::min(least_m, surface_distance_m(links[l], then, least_m));
   }
   return least_m;
 }

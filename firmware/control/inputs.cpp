@@ -33,7 +33,9 @@ bool plausible(const Target& target) {
 bool plausible(const Obstacle& obstacle) {
   const Capsule& capsule = obstacle.capsule;
   return within(capsule.start, kLargestLength_m) && within(capsule.end, kLargestLength_m) && capsule.radius_m >= 0.0 &&
-         capsule.radius_m <= kLargestLength_m && within(obstacle.velocity_mps, kLargestSpeed_mps) &&
+         capsule.radius_m <= kLargestLength_m && within(obstacle.half_width_m, kLargestLength_m) &&
+         obstacle.half_height_m >= 0.0 && obstacle.half_height_m <= kLargestLength_m &&
+         within(obstacle.velocity_mps, kLargestSpeed_mps) &&
          within(obstacle.angular_velocity_radps, kLargestRate_radps);
 }
 

@@ -8,11 +8,13 @@ namespace {
 
 constexpr double kNoise_m = 0.05;  // what a measurement may be wrong by
 
-/// How far the ends of the axis have moved; which end is which does not matter.
-double displacement_m(const Capsule& a, const Capsule& b) {
+/// How far the ends of the axis have moved, or the sides of a box turned; which is which does not matter.
+double displacement_m(const Obstacle& before, const Obstacle& now) {
+  const Capsule &a = before.capsule, &b = now.capsule;
   const double straight_m = std::max((a.start - b.start).norm(), (a.end - b.end).norm());
   const double crossed_m = std::max((a.start - b.end).norm(), (a.end - b.start).norm());
-  return std::min(straight_m, crossed_m);
+  const Vector3 &u = before.half_width_m, &v = now.half_width_m;
+  return std::max(std::min(straight_m, crossed_m), std::min((u - v).norm(), (u + v).norm()));
 }
 
 /// The speed of the fastest point of the axis.
@@ -33,11 +35,13 @@ void Jumps::sort(const ObstacleSet& set) {
 
 bool Jumps::could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const {
   const double fastest_mps = std::max({speed_bound_mps_, speed_mps(before), speed_mps(now)});
-  return displacement_m(before.capsule, now.capsule) <= fastest_mps * elapsed_s + kNoise_m;
+  return displacement_m(before, now) <= fastest_mps * elapsed_s + kNoise_m;
 }
 
 void Jumps::remember(const Obstacle& obstacle, double now_s) {
-  places_[next_place_] = {{obstacle.id, obstacle.capsule}, now_s + memory_s_};
+  OldPlace& place = places_[next_place_] = {obstacle, now_s + memory_s_};
+  place.obstacle.velocity_mps.setZero();
+  place.obstacle.angular_velocity_radps.setZero();
   next_place_ = (next_place_ + 1) % kMostPlaces;
 }
 

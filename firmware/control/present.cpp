@@ -4,14 +4,15 @@
 
 namespace sidestep {
 
-ObstacleView view_obstacles(const Settings& settings, const Latest<ObstacleSet>& obstacles, double now_s) {
-  if (!obstacles.message) return {};
+ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s) {
+  if (!obstacles.message) return {nullptr, 0.0, 0.0, &model.surroundings};
+  const Settings& settings = model.settings;
   const ObstacleTrust& trust = settings.obstacle_trust;
   const double age_s = obstacles.age_s(now_s) + trust.latency_s;
   const double anywhere_m = age_s * settings.obstacle_speed_bound_mps;
   const double astray_m = std::min(anywhere_m, 0.5 * trust.acceleration_bound_mps2 * age_s * age_s);
   const bool fresh = obstacles.fresh(now_s, settings.ages.obstacles_s);
-  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? astray_m : anywhere_m)};
+  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? astray_m : anywhere_m), &model.surroundings};
 }
 
 Target moved_on(const Target& target, double dt_s) {

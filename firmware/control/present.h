@@ -1,13 +1,12 @@
 #pragma once
 
-#include "firmware/control/inputs.h"
-#include "firmware/model/clearance.h"
+#include "firmware/control/cycle.h"
 
 namespace sidestep {
 
 /// The obstacles as they are now: the last set and its age. They grow by what is not known: where they were, how they
-/// have moved since, and past the time of the set by as far as they may have come.
-ObstacleView view_obstacles(const Settings& settings, const Latest<ObstacleSet>& obstacles, double now_s);
+/// have moved since, and past the time of the set by as far as they may have come. The surroundings do not.
+ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s);
 
 /// The target dt_s later at its own velocities.
 Target moved_on(const Target& target, double dt_s);

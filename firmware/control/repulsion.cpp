@@ -24,11 +24,13 @@ Vector3 repulsion(const PaperGains& gains, const Vector3& obstacle_position_m, c
 Vector3 repulsion(const PaperGains& gains, const ObstacleView& view, const Vector3& tool_position_m,
                   const Vector3& tool_velocity_mps) {
   Vector3 force = Vector3::Zero();
-  if (!view.set) return force;
-  for (int i = 0; i < view.set->count; ++i) {
-    const Obstacle& obstacle = view.set->obstacles[i];
-    const Capsule present = moved(obstacle, view.age_s);
-    const Vector3 nearest = nearest_on_segment(present.start, present.end, tool_position_m);
+  const Capsule tool{tool_position_m, tool_position_m, 0.0};
+  const double farthest_m = std::max(gains.rho_0_m, gains.rho_v_m);
+  for (int i = 0; i < view.count(); ++i) {
+    const Obstacle& obstacle = view.at(i);
+    const Vector3 centre = obstacle.capsule.centre() + obstacle.velocity_mps * view.age_s;
+    if ((tool_position_m - centre).norm() > farthest_m + obstacle.capsule.extent_m()) continue;
+    const Vector3 nearest = measure_pair(tool, view.present(i)).on_obstacle;
     force += repulsion(gains, nearest, obstacle.velocity_mps, tool_position_m, tool_velocity_mps);
   }
   return force;

@@ -118,9 +118,8 @@ ShieldRows make_rows(const ShieldSettings& settings, const Surroundings& now, co
   for (const auto& [a, b] : now.self_pairs) add_self(settings, now, range, a, b, rows);
   for (int i = 0; i < now.clearance.near_count; ++i) {
     const NearPair& pair = now.clearance.near[i];
-    const Vector3& velocity_mps = now.obstacles.set->obstacles[pair.now.obstacle].velocity_mps;
-    add_distance(settings, now, range, pair, velocity_mps, hard_only, rows);
-    if (!hard_only) add_pass(settings, now, range, pair, velocity_mps, rows);
+    add_distance(settings, now, range, pair, pair.velocity_mps, hard_only, rows);
+    if (!hard_only) add_pass(settings, now, range, pair, pair.velocity_mps, rows);
   }
   return rows;
 }

@@ -21,7 +21,7 @@ constexpr double kCollision_s = 20.0;
 constexpr double kTooNear_m = 0.01;
 
 void advance(ObstacleSet& set, double dt_s) {
-  for (int i = 0; i < set.count; ++i) set.obstacles[i].capsule = moved(set.obstacles[i], dt_s);
+  for (int i = 0; i < set.count; ++i) set.obstacles[i] = moved(set.obstacles[i], dt_s);
 }
 
 }  // namespace
@@ -43,7 +43,8 @@ bool is_at(const Posture& posture, const Target& target) {
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
-  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles have grown already
+  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles have grown already, and hold the surroundings
+  coarse_.surroundings.clear();
 }
 
 Forecast Rollout::run(const Snapshot& from, const Guide& guide) {

@@ -9,9 +9,9 @@ namespace {
 
 /// How near an obstacle comes to the base on its way, m.
 double nearest_to_base(const Obstacle& obstacle, double horizon_s) {
-  const Vector3 centre = 0.5 * (obstacle.capsule.start + obstacle.capsule.end);
+  const Vector3 centre = obstacle.capsule.centre();
   const Vector3 on_way = nearest_on_segment(centre, centre + obstacle.velocity_mps * horizon_s, Vector3::Zero().eval());
-  return on_way.norm() - 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm() - obstacle.capsule.radius_m;
+  return on_way.norm() - obstacle.capsule.extent_m();
 }
 
 /// Keeps the obstacles that come nearest.
@@ -49,13 +49,8 @@ void look(const Model& model, const Inputs& inputs, const State& state, double n
   snapshot.target = present(inputs.target, now_s);
 
   Nearest nearest(snapshot.movers, model.settings.foresight.horizon_s);
-  const ObstacleView view = view_obstacles(model.settings, inputs.obstacles, now_s);
-  for (int i = 0; view.set && i < view.set->count; ++i) {
-    Obstacle obstacle = view.set->obstacles[i];
-    obstacle.capsule = moved(obstacle, view.age_s);
-    obstacle.capsule.radius_m += view.growth_m;
-    nearest.consider(obstacle);
-  }
+  const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);
+  for (int i = 0; i < view.count(); ++i) nearest.consider(view.present(i));
 }
 
 }  // namespace sidestep

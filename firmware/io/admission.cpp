@@ -19,22 +19,17 @@ Quaternion quaternion(const double* wxyz) {
   return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
 }
 
-/// The capsule that encloses the obstacle, in the base frame; its radius is NaN when the shape makes no sense.
-Capsule enclose(const obstacle_t& obstacle) {
+/// An obstacle of that shape at rest; its radius is NaN when the shape makes no sense.
+Obstacle shaped(const obstacle_t& obstacle) {
   const Vector3 centre = vector(obstacle.position), size = vector(obstacle.size);
-  if (obstacle.shape == obstacle_t::SPHERE) return {centre, centre, size[0]};
-  const Capsule nonsense{centre, centre, std::nan("")};
+  if (obstacle.shape == obstacle_t::SPHERE) return sphere_obstacle(centre, size[0]);
+  const Obstacle nonsense = sphere_obstacle(centre, std::nan(""));
   const Quaternion turn = quaternion(obstacle.quaternion);
   if (!size.allFinite() || size.minCoeff() < 0.0 || !(std::abs(turn.norm() - 1.0) < 1e-3)) return nonsense;
-  Capsule local;
-  if (obstacle.shape == obstacle_t::CAPSULE)
-    local = {Vector3(0, 0, -0.5 * size[1]), Vector3(0, 0, 0.5 * size[1]), size[0]};
-  else if (obstacle.shape == obstacle_t::BOX)
-    local = capsule_around_box(size);
-  else
-    return nonsense;
   const Matrix3 rotation = turn.normalized().toRotationMatrix();
-  return {centre + rotation * local.start, centre + rotation * local.end, local.radius_m};
+  if (obstacle.shape == obstacle_t::CAPSULE) return capsule_obstacle(centre, rotation, size[0], size[1]);
+  if (obstacle.shape == obstacle_t::BOX) return box_obstacle(centre, rotation, size);
+  return nonsense;
 }
 
 /// The paper's law is the paper's law and nothing more: it takes obstacles to be where they are said to be.
@@ -105,9 +100,10 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
   for (int i = 0; i < value.count; ++i) {
     const obstacle_t& from = message.obstacles[static_cast<size_t>(i)];
     Obstacle& to = value.obstacles[static_cast<size_t>(i)];
-    const bool turns = from.shape != obstacle_t::SPHERE;
-    to = {from.id, enclose(from), vector(from.velocity),
-          turns ? vector(from.angular_velocity) : Vector3(Vector3::Zero())};
+    to = shaped(from);
+    to.id = from.id;
+    to.velocity_mps = vector(from.velocity);
+    if (from.shape != obstacle_t::SPHERE) to.angular_velocity_radps = vector(from.angular_velocity);
     if (!plausible(to)) return reject("obstacles with impossible values");
   }
   if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) return false;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "firmware/io/config_section.h"
+#include "firmware/io/surroundings.h"
 #include "firmware/model/self_pairs.h"
 
 namespace sidestep {
@@ -244,6 +245,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);
   read_foresight(root.section("foresight"), settings.foresight);
+  config.model.surroundings = read_surroundings(root);
   root.finish();
   config.model.self_pairs = find_self_pairs(config.model.arm);  // takes a while
   return config;

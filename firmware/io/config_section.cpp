@@ -60,6 +60,15 @@ Section Section::section(const std::string& key) {
   return Section(file_, path_ + key + ".", take(key));
 }
 
+std::vector<Section> Section::sections(const std::string& key) {
+  const YAML::Node node = take(key);
+  if (!node.IsNull() && !node.IsSequence()) fail(key, "must be a list");
+  std::vector<Section> sections;
+  for (const YAML::Node& entry : node)
+    sections.push_back(Section(file_, fmt::format("{}{}[{}].", path_, key, sections.size()), entry));
+  return sections;
+}
+
 double Section::to_number(const std::string& key, const YAML::Node& node) const {
   double value = 0.0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || std::isnan(value))
@@ -70,10 +79,22 @@ double Section::to_number(const std::string& key, const YAML::Node& node) const 
 void Section::number(const std::string& key, double& value, double lowest, double highest) {
   const YAML::Node node = take(key);
   if (node.IsNull()) return;
+  value = number_within(key, node, lowest, highest);
+}
+
+double Section::number_within(const std::string& key, const YAML::Node& node, double lowest, double highest) const {
   const double number = to_number(key, node);
   if (!(number >= lowest && number <= highest))
     fail(key, fmt::format("is {}, must be between {} and {}", number, lowest, highest));
-  value = number;
+  return number;
+}
+
+void Section::numbers(const std::string& key, double* values, Eigen::Index count, double lowest, double highest) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  if (!node.IsSequence() || node.size() != static_cast<size_t>(count))
+    fail(key, fmt::format("must be a list of {} numbers", count));
+  for (const YAML::Node& entry : node) *values++ = number_within(key, entry, lowest, highest);
 }
 
 void Section::positive(const std::string& key, double& value) {

@@ -25,6 +25,9 @@ class Section {
   /// A mapping below this one; empty when absent.
   Section section(const std::string& key);
 
+  /// A list of mappings; none when absent.
+  std::vector<Section> sections(const std::string& key);
+
   /// Each leaves `value` as it is when the key is absent.
   void number(const std::string& key, double& value, double lowest, double highest);
   void positive(const std::string& key, double& value);
@@ -33,6 +36,12 @@ class Section {
   void text(const std::string& key, std::string& value);
   void texts(const std::string& key, std::vector<std::string>& values);
   void choice(const std::string& key, std::string& value, const std::vector<std::string>& choices);
+
+  /// A list with as many numbers as `values` has.
+  template <typename Vector>
+  void numbers(const std::string& key, Vector& values, double lowest, double highest) {
+    numbers(key, values.data(), values.size(), lowest, highest);
+  }
 
   /// One number for all joints or a list with one each; may be infinite.
   void per_joint(const std::string& key, int joints, JointVector& value);
@@ -49,6 +58,8 @@ class Section {
 
  private:
   Section(std::string file, std::string path, const YAML::Node& node);
+  void numbers(const std::string& key, double* values, Eigen::Index count, double lowest, double highest);
+  double number_within(const std::string& key, const YAML::Node& node, double lowest, double highest) const;
   /// The value of a key, or null; remembers that the key is known.
   YAML::Node take(const std::string& key);
   double to_number(const std::string& key, const YAML::Node& node) const;

@@ -70,8 +70,8 @@ double Neighbourhood::oldest_s() const {
 
 void Neighbourhood::add(const Part& part, int number, double at_s) {
   for (int i = 0; i < part.set.count; ++i) {
-    Obstacle obstacle = transformed(part.base_from_part, part.set.obstacles[static_cast<size_t>(i)]);
-    obstacle.capsule = moved(obstacle, at_s - part.received_s);
+    const Obstacle reported = transformed(part.base_from_part, part.set.obstacles[static_cast<size_t>(i)]);
+    Obstacle obstacle = moved(reported, at_s - part.received_s);
     if (number > 0) obstacle.id = -(number * kIdsOfANeighbour + i);
     whole_->add(obstacle);
   }

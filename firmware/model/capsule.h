@@ -11,6 +11,10 @@ struct Capsule {
   Vector3 start;
   Vector3 end;
   double radius_m;
+
+  Vector3 centre() const { return 0.5 * (start + end); }
+  /// From the centre to the farthest point, m.
+  double extent_m() const { return 0.5 * (end - start).norm() + radius_m; }
 };
 
 /// The two nearest points of two segments; `a` on the first, `b` on the second.

@@ -33,44 +33,6 @@ double square(double x) {
   return x * x;
 }
 
-Proximity proximity(const Capsule& link, const Capsule& obstacle, const NearestPoints& points) {
-  Proximity pair;
-  pair.on_arm = points.a;
-  pair.on_obstacle = points.b;
-  const Vector3 gap = points.a - points.b;
-  pair.axis_distance_m = gap.norm();
-  pair.distance_m = pair.axis_distance_m - link.radius_m - obstacle.radius_m;
-  if (pair.axis_distance_m > 1e-9)
-    pair.normal = gap / pair.axis_distance_m;
-  else if (link.end != link.start)  // the axes meet: any way out across the link
-    pair.normal = (link.end - link.start).unitOrthogonal();
-  return pair;
-}
-
-/// The closest approach of a point of an obstacle with this radius.
-Approach approach_of(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
-                     double horizon_s) {
-  const Vector3 path = velocity_mps * horizon_s;
-  const NearestPoints points = nearest_on_axes(link, {point, point + path, 0.0});
-  Approach approach;
-  approach.on_arm = points.a;
-  const double length2 = path.squaredNorm();
-  approach.time_s = length2 > 0.0 ? horizon_s * path.dot(points.b - point) / length2 : 0.0;
-  const Vector3 gap = points.a - points.b;
-  const double axis_distance_m = approach.axis_distance_m = gap.norm();
-  approach.distance_m = axis_distance_m - link.radius_m - radius_m;
-  // A path through the axis itself can be left to either side; within this distance the side is not yet decided.
-  const double undecided_m = 0.005;
-  approach.head_on = axis_distance_m < undecided_m;
-  if (!approach.head_on) {
-    approach.normal = gap / axis_distance_m;
-    return approach;
-  }
-  const Vector3 across = path.cross(link.end - link.start);
-  approach.normal = across.norm() > 1e-9 ? across.normalized() : path.unitOrthogonal();
-  return approach;
-}
-
 /// Gathers a Clearance, obstacle by obstacle. Most pairs turn out not to matter by one comparison of squares.
 class Gatherer {
  public:
@@ -82,40 +44,51 @@ class Gatherer {
         limit_m_(reach.range_m),
         clearance_(clearance) {}
 
-  void gather(int index) {
-    const Obstacle& obstacle = view_.set->obstacles[index];
+  void gather(const Obstacle& obstacle, int index, double growth_m) {
     const Capsule& reported = obstacle.capsule;
     const Vector3 axis = reported.end - reported.start;
-    const double half_length_m = axis.isZero(0.0) ? 0.0 : 0.5 * axis.norm();
+    const Length length = axis.isZero(0.0) ? Length{} : length_of(obstacle, 0.5 * axis.norm());
     const Vector3 centre = reported.start + 0.5 * axis + obstacle.velocity_mps * view_.age_s;
-    const double travel_m = obstacle.velocity_mps.norm() * horizon_s_;
-    const double radii_m = links_.radius_m + reported.radius_m + view_.growth_m;
-    if (links_.distance2_m2(centre) > square(half_length_m + reach_m(radii_m, travel_m))) return;
+    const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
+    const double radii_m = links_.radius_m + reported.radius_m + growth_m;
+    if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
 
-    Capsule present = moved(obstacle, view_.age_s);
-    present.radius_m += view_.growth_m;
+    const Obstacle present = view_.present(index);
     for (int s = 0; s < static_cast<int>(arm_.shapes.size()); ++s) {
       const Capsule& link = links_.shapes[s];
-      const NearestPoints points = nearest_on_axes(link, present);
+      const NearestPoints points = nearest_on_axes(link, present.capsule);
       const double distance2_m2 = (points.a - points.b).squaredNorm();
-      if (distance2_m2 > square(reach_m(link.radius_m + present.radius_m, travel_m))) continue;
-      NearPair pair{proximity(link, present, points), {}};
+      if (distance2_m2 > square(reach_m(link.radius_m + present.capsule.radius_m, core_m, travel_m))) continue;
+      NearPair pair{measure_pair(link, present), {}};
       pair.now.shape = s;
       pair.now.obstacle = index;
       if (pair.now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = pair.now;
       if (arm_.shapes[s].body == 0) continue;
       if (pair.now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = pair.now;
       if (pair.now.distance_m - travel_m > limit_m_) continue;
-      pair.approach = approach_of(link, present.radius_m, points.b, obstacle.velocity_mps, horizon_s_);
+      pair.velocity_mps = velocity_at(present, pair.now.on_obstacle);
+      pair.approach = predict_approach(link, present, pair.now, horizon_s_);
       if (pressing_m(pair) < limit_m_) keep(pair);
     }
   }
 
  private:
-  /// Axes farther apart than this do not matter, with these radii and as far as the obstacle travels.
-  double reach_m(double radii_m, double travel_m) const {
+  /// What an obstacle has that is no sphere.
+  struct Length {
+    double half_m = 0.0;     ///< half its axis
+    double core_m = 0.0;     ///< how far a box reaches beyond its axis
+    double swing_mps = 0.0;  ///< what turning adds to the speed of its fastest point
+  };
+  static Length length_of(const Obstacle& obstacle, double half_m) {
+    const double radius_m = obstacle.capsule.radius_m;
+    return {half_m, obstacle.is_box() ? radius_m : 0.0, obstacle.angular_velocity_radps.norm() * (half_m + radius_m)};
+  }
+
+  /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the
+  /// obstacle travels.
+  double reach_m(double radii_m, double core_m, double travel_m) const {
     const double surface_m = std::max(clearance_.nearest.distance_m, limit_m_ + travel_m);
-    return std::max(clearance_.nearest_axis.axis_distance_m, radii_m + surface_m);
+    return std::max(clearance_.nearest_axis.axis_distance_m + core_m, radii_m + surface_m);
   }
 
   /// As soon as the list is full, only what is more pressing than the least pressing there comes in, for that one.
@@ -139,19 +112,17 @@ class Gatherer {
 
 }  // namespace
 
-Proximity measure_pair(const Capsule& link, const Capsule& obstacle) {
-  return proximity(link, obstacle, nearest_on_axes(link, obstacle));
-}
-
-Approach predict_approach(const Capsule& link, const Capsule& obstacle, const Vector3& velocity_mps, double horizon_s) {
-  return approach_of(link, obstacle.radius_m, nearest_on_axes(link, obstacle).b, velocity_mps, horizon_s);
+Obstacle ObstacleView::present(int index, double later_s) const {
+  Obstacle obstacle = moved(at(index), age_s + later_s);
+  obstacle.capsule.radius_m += growth_of(index);
+  return obstacle;
 }
 
 Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
-  if (!view.set) return clearance;
   Gatherer gatherer(arm, posture, view, reach, clearance);
-  for (int o = 0; o < view.set->count; ++o) gatherer.gather(o);
+  for (int o = 0; o < view.reported(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
+  for (int o = view.reported(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/model/proximity.h"
+
 namespace sidestep {
 namespace {
 
@@ -10,9 +12,7 @@ struct Ball {
   Vector3 centre;
   double radius_m;
 
-  explicit Ball(const Capsule& capsule)
-      : centre(0.5 * (capsule.start + capsule.end)),
-        radius_m(0.5 * (capsule.end - capsule.start).norm() + capsule.radius_m) {}
+  explicit Ball(const Capsule& capsule) : centre(capsule.centre()), radius_m(capsule.extent_m()) {}
 };
 
 }  // namespace
@@ -26,14 +26,13 @@ double clearance_after(const Arm& arm, const Posture& posture, const Obstacle* o
 
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
-    const Capsule then = moved(obstacles[o], after_s);
-    const Ball there(then);
+    const Obstacle then = moved(obstacles[o], after_s);
+    const Ball there(then.capsule);
     for (int l = 0; l < moving; ++l) {
       const Ball link(links[l]);
       const double near_m = link.radius_m + there.radius_m + least_m;
       if (near_m <= 0.0 || (link.centre - there.centre).squaredNorm() >= near_m * near_m) continue;
-      const NearestPoints points = nearest_on_axes(links[l], then);
-      least_m = std::min(least_m, (points.a - points.b).norm() - links[l].radius_m - then.radius_m);
+      least_m = std::min(least_m, surface_distance_m(links[l], then, least_m));
     }
   }
   return least_m;

@@ -54,7 +54,7 @@ void ClosedLoop::follow(const Result& result) {
     target.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
   for (int i = 0; i < obstacles->count; ++i) {
     Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(i)];
-    obstacle.capsule = moved(obstacle, period_s);
+    obstacle = moved(obstacle, period_s);
   }
 }
 
@@ -77,7 +77,9 @@ bool ClosedLoop::run_until(Mode mode, double limit_s) {
 
 Obstacle& ClosedLoop::add_sphere(const Vector3& position_m, const Vector3& velocity_mps, double radius_m) {
   Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(obstacles->count)];
-  obstacle = {obstacles->count++, {position_m, position_m, radius_m}, velocity_mps, Vector3::Zero()};
+  obstacle = sphere_obstacle(position_m, radius_m);
+  obstacle.id = obstacles->count++;
+  obstacle.velocity_mps = velocity_mps;
   return obstacle;
 }
 

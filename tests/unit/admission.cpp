@@ -123,21 +123,27 @@ void spheres_and_capsules_arrive_as_they_were_sent(void**) {
   }
 }
 
-void a_box_arrives_as_a_capsule_that_holds_its_corners(void**) {
+void a_box_arrives_with_its_corners_and_a_capsule_that_holds_them(void**) {
   Random random(4);
   const auto set = std::make_unique<ObstacleSet>();
   Admission admission(kJoints, Settings());
   for (int trial = 1; trial <= 200; ++trial) {
-    const obstacle_t box = random_obstacle(random, obstacle_t::BOX);
-    assert_true(admit(admission, encoded(obstacles_message(trial, {box})), *set));
-    const Capsule& capsule = set->obstacles[0].capsule;
+    const obstacle_t sent = random_obstacle(random, obstacle_t::BOX);
+    assert_true(admit(admission, encoded(obstacles_message(trial, {sent})), *set));
+    const Obstacle& obstacle = set->obstacles[0];
+    assert_true(obstacle.is_box());
+    const Box box = box_of(obstacle);
     double farthest_m = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3 sign(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
-      const Vector3 p = vector(box.position) + rotation(box.quaternion) * sign.cwiseProduct(vector(box.size));
-      farthest_m = std::max(farthest_m, (p - nearest_on_segment(capsule.start, capsule.end, p)).norm());
+      const Vector3 p = vector(sent.position) + rotation(sent.quaternion) * sign.cwiseProduct(vector(sent.size));
+      const Vector3 in_box = (box.axes.transpose() * (p - box.centre)).cwiseAbs();
+      check_near_because(in_box, box.half_m, 1e-12, "trial %d", trial);
+      const Vector3 on_axis = nearest_on_segment(obstacle.capsule.start, obstacle.capsule.end, p);
+      farthest_m = std::max(farthest_m, (p - on_axis).norm());
     }
-    check_near_because(farthest_m, capsule.radius_m, 1e-9, "trial %d", trial);
+    check_near_because(farthest_m, obstacle.capsule.radius_m, 1e-9, "trial %d", trial);
+    check_near(obstacle.angular_velocity_radps, vector(sent.angular_velocity), 0);
   }
 }
 
@@ -221,7 +227,7 @@ int main() {
       cmocka_unit_test(a_point_target_ignores_the_orientation_fields),
       cmocka_unit_test(a_quaternion_slightly_off_is_made_unit),
       cmocka_unit_test(spheres_and_capsules_arrive_as_they_were_sent),
-      cmocka_unit_test(a_box_arrives_as_a_capsule_that_holds_its_corners),
+      cmocka_unit_test(a_box_arrives_with_its_corners_and_a_capsule_that_holds_them),
       cmocka_unit_test(the_empty_set_is_a_message_too),
       cmocka_unit_test(as_many_obstacles_as_promised_are_taken_and_no_more),
       cmocka_unit_test(old_messages_are_dropped_but_are_no_offence),

@@ -4,12 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include "host/sim/solid.h"
 #include "tests/support/check.h"
+#include "tests/support/fcl_distance.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
 
 using namespace sidestep;
+using test::fcl_distance_m;
 using test::home_rad;
 using test::lwa3;
 using test::Random;
@@ -18,29 +19,24 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The distance by FCL, as the simulator judges it.
-double fcl_distance_m(const Capsule& a, const Capsule& b) {
-  const auto solid = [](const Capsule& capsule) {
-    return sim::Solid{sim::Shape::kCapsule, Vector3(capsule.radius_m, (capsule.end - capsule.start).norm(), 0)};
-  };
-  const auto pose = [](const Capsule& capsule) {
-    const Vector3 axis = capsule.end - capsule.start;
-    const Vector3 z = axis.norm() > 0.0 ? axis.normalized() : Vector3(Vector3::UnitZ()), x = z.unitOrthogonal();
-    Eigen::Isometry3d base_from_capsule = Eigen::Isometry3d::Identity();
-    base_from_capsule.linear() << x, z.cross(x), z;
-    base_from_capsule.translation() = 0.5 * (capsule.start + capsule.end);
-    return base_from_capsule;
-  };
-  return sim::signed_distance_m(solid(a), pose(a), solid(b), pose(b));
+/// A sphere, a capsule or a box, at rest.
+Obstacle random_shape(Random& random, double reach_m) {
+  const Vector3 centre = random.inside(-reach_m, reach_m);
+  const Matrix3 rotation = random.turn().toRotationMatrix();
+  const double largest_m = random.chance(0.1) ? 0.4 * reach_m : 0.1, radius_m = random.uniform(0.01, largest_m);
+  switch (random.index(3)) {
+    case 0:
+      return sphere_obstacle(centre, radius_m);
+    case 1:
+      return capsule_obstacle(centre, rotation, radius_m, random.uniform(0.01, 0.6));
+    default:
+      return box_obstacle(centre, rotation, random.inside(0.01, 5.0 * largest_m));
+  }
 }
 
 Obstacle random_obstacle(Random& random, double reach_m) {
-  Obstacle obstacle;
+  Obstacle obstacle = random_shape(random, reach_m);
   obstacle.id = random.index(1000000);
-  const Vector3 centre = random.inside(-reach_m, reach_m);
-  const Vector3 half = random.chance(0.5) ? Vector3(random.inside(-0.3, 0.3)) : Vector3(Vector3::Zero());
-  const double largest_m = random.chance(0.1) ? 0.4 * reach_m : 0.1;
-  obstacle.capsule = {centre - half, centre + half, random.uniform(0.01, largest_m)};
   obstacle.velocity_mps = random.inside(-1, 1);
   obstacle.angular_velocity_radps = random.inside(-2, 2);
   return obstacle;
@@ -57,12 +53,12 @@ std::unique_ptr<ObstacleSet> random_set(Random& random, int count, double reach_
 std::vector<NearPair> all_pairs(const Posture& posture, const ObstacleView& view, double horizon_s) {
   std::vector<NearPair> pairs;
   for (int o = 0; o < view.set->count; ++o) {
-    const Obstacle& obstacle = view.set->obstacles[static_cast<size_t>(o)];
-    Capsule present = moved(obstacle, view.age_s);
-    present.radius_m += view.growth_m;
+    Obstacle present = moved(view.set->obstacles[static_cast<size_t>(o)], view.age_s);
+    present.capsule.radius_m += view.growth_m;
     for (int s = 0; s < static_cast<int>(lwa3().shapes.size()); ++s) {
       const Capsule link = placed(posture, lwa3().shapes[static_cast<size_t>(s)]);
-      NearPair pair{measure_pair(link, present), predict_approach(link, present, obstacle.velocity_mps, horizon_s)};
+      const Proximity now = measure_pair(link, present);
+      NearPair pair{now, predict_approach(link, present, now, horizon_s)};
       pair.now.shape = s;
       pair.now.obstacle = o;
       pairs.push_back(pair);
@@ -83,7 +79,8 @@ void distance_of_a_pair_agrees_with_fcl(void**) {
   Random random(1);
   int compared = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    Capsule a = random_obstacle(random, 0.5).capsule, b = random_obstacle(random, 0.5).capsule;
+    const Capsule a = random_shape(random, 0.5).capsule;
+    const Obstacle b = random_shape(random, 0.5);
     const double distance_m = fcl_distance_m(a, b);
     const Proximity pair = measure_pair(a, b);
     check((pair.distance_m > 0) == (distance_m > 0), "trial %d", trial);
@@ -97,11 +94,12 @@ void distance_of_a_pair_agrees_with_fcl(void**) {
 void normal_points_from_the_obstacle_to_the_arm(void**) {
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
-    const Capsule link = random_obstacle(random, 0.5).capsule, obstacle = random_obstacle(random, 0.5).capsule;
+    const Capsule link = random_shape(random, 0.5).capsule;
+    const Obstacle obstacle = random_shape(random, 0.5);
+    const double radius_m = obstacle.is_box() ? 0.0 : obstacle.capsule.radius_m;
     const Proximity pair = measure_pair(link, obstacle);
     check_near_because(pair.on_obstacle + pair.axis_distance_m * pair.normal, pair.on_arm, 1e-9, "trial %d", trial);
-    check_near_because(pair.distance_m, pair.axis_distance_m - link.radius_m - obstacle.radius_m, 1e-15, "trial %d",
-                       trial);
+    check_near_because(pair.distance_m, pair.axis_distance_m - link.radius_m - radius_m, 1e-15, "trial %d", trial);
   }
 }
 
@@ -193,24 +191,62 @@ void nothing_is_near_without_obstacles(void**) {
   }
 }
 
+/// Of what is looked at: the point that is nearest now of a sphere or a capsule, all of a box.
+double distance_on_the_way_m(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double time_s) {
+  const Vector3 way = time_s * velocity_at(obstacle, now.on_obstacle);
+  Obstacle then = obstacle.is_box() ? obstacle : sphere_obstacle(now.on_obstacle, obstacle.capsule.radius_m);
+  then.capsule.start += way;
+  then.capsule.end += way;
+  return measure_pair(link, then).distance_m;
+}
+
 void closest_approach_is_the_least_distance_along_the_way(void**) {
   Random random(5);
-  for (int trial = 0; trial < 500; ++trial) {
-    const Obstacle link = random_obstacle(random, 0.5), obstacle = random_obstacle(random, 1.0);
+  int boxes = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Capsule link = random_shape(random, 0.5).capsule;
+    const Obstacle obstacle = random_obstacle(random, 1.0);
     const double horizon_s = random.uniform(0.1, 1.0);
-    const Approach approach = predict_approach(link.capsule, obstacle.capsule, obstacle.velocity_mps, horizon_s);
-    const Vector3 point = nearest_on_axes(link.capsule, obstacle.capsule).b;
-    const double radii_m = link.capsule.radius_m + obstacle.capsule.radius_m;
-    const auto distance_m = [&](double time_s) {
-      const Vector3 p = point + time_s * obstacle.velocity_mps;
-      return (p - nearest_on_segment(link.capsule.start, link.capsule.end, p)).norm() - radii_m;
-    };
+    const Proximity now = measure_pair(link, obstacle);
+    const Approach approach = predict_approach(link, obstacle, now, horizon_s);
     check(approach.time_s >= 0 && approach.time_s <= horizon_s + 1e-12, "trial %d: time %g", trial, approach.time_s);
-    check_near_because(distance_m(approach.time_s), approach.distance_m, 1e-9, "trial %d", trial);
+    check_near_because(distance_on_the_way_m(link, obstacle, now, approach.time_s), approach.distance_m, 1e-9,
+                       "trial %d", trial);
+    const double slack_m = obstacle.is_box() ? 0.02 : 1e-9;
     for (int i = 0; i <= 50; ++i)
-      check(distance_m(i * horizon_s / 50) >= approach.distance_m - 1e-9, "trial %d, sample %d", trial, i);
+      check(distance_on_the_way_m(link, obstacle, now, i * horizon_s / 50) >= approach.distance_m - slack_m,
+            "trial %d, sample %d", trial, i);
     check_near_because(approach.normal.norm(), 1.0, 1e-9, "trial %d", trial);
+    boxes += obstacle.is_box() && approach.time_s > 0.0;
   }
+  check(boxes > 100, "%d boxes on their way", boxes);
+}
+
+void what_stands_there_always_counts_and_neither_ages_nor_grows(void**) {
+  const std::vector<Obstacle> surroundings{box_obstacle(Vector3(0, 0, 2), Matrix3::Identity(), Vector3(1, 1, 0.2))};
+  const auto set = std::make_unique<ObstacleSet>();
+  const Posture posture = forward(lwa3(), JointVector::Zero(7));
+  const double expected_m = 1.9 - posture.tool_position.z() - 0.05;
+  for (const ObstacleView& view :
+       {ObstacleView{nullptr, 0, 0, &surroundings}, ObstacleView{set.get(), 0.3, 0.4, &surroundings}}) {
+    const Clearance clearance = measure_clearance(lwa3(), posture, view, {0.4, 0.0});
+    check_near(clearance.nearest.distance_m, expected_m, 1e-12);
+    assert_int_equal(clearance.nearest.obstacle, 0);
+  }
+}
+
+void velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point(void**) {
+  auto set = std::make_unique<ObstacleSet>();
+  set->count = 1;
+  set->obstacles[0] = box_obstacle(Vector3(0.3, 0, 1.5), Matrix3::Identity(), Vector3(1, 0.2, 0.1));
+  set->obstacles[0].velocity_mps = Vector3(0, 0.1, 0);
+  set->obstacles[0].angular_velocity_radps = Vector3(0, 2, 0);
+  const Clearance clearance =
+      measure_clearance(lwa3(), forward(lwa3(), JointVector::Zero(7)), {set.get(), 0, 0}, {0.4, 0.0});
+  assert_true(clearance.near_count > 0);
+  const NearPair& pair = clearance.near[0];
+  const Vector3 arm = pair.now.on_obstacle - Vector3(0.3, 0, 1.5);
+  check_near(pair.velocity_mps, Vector3(2 * arm.z(), 0.1, -2 * arm.x()), 1e-12);
 }
 
 }  // namespace
@@ -226,6 +262,8 @@ int main() {
       cmocka_unit_test(the_base_column_counts_for_the_surface_but_not_for_the_axis),
       cmocka_unit_test(nothing_is_near_without_obstacles),
       cmocka_unit_test(closest_approach_is_the_least_distance_along_the_way),
+      cmocka_unit_test(what_stands_there_always_counts_and_neither_ages_nor_grows),
+      cmocka_unit_test(velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

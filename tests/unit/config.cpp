@@ -111,6 +111,28 @@ void a_dialect_brings_its_channels_and_its_patience(void**) {
   check_near(load("").model.settings.start_guard_s, 0.0, 0);
 }
 
+void surroundings_arrive_with_shape_and_place(void**) {
+  const std::vector<Obstacle> list = load(
+                                         "surroundings:\n"
+                                         "  - {shape: sphere, radius_m: 0.3, position_m: [1, 2, 3]}\n"
+                                         "  - {shape: capsule, radius_m: 0.1, length_m: 0.4, position_m: [1, 0, 0], "
+                                         "quaternion: [0.5, 0.5, 0.5, 0.5]}\n"
+                                         "  - {shape: box, edges_m: [0.2, 2, 1], position_m: [0, 0, 1]}\n")
+                                         .model.surroundings;
+  assert_int_equal(list.size(), 3);
+  check_near(list[0].capsule.centre(), Vector3(1, 2, 3), 0);
+  check_near(list[0].capsule.radius_m, 0.3, 0);
+  check_near(list[1].capsule.end, Vector3(1.2, 0, 0), 1e-12);
+  check_near(box_of(list[2]).half_m, Vector3(1, 0.5, 0.1), 1e-12);
+  check_near(box_of(list[2]).axes.col(0).eval(), Vector3(0, 1, 0), 1e-12);
+  for (int i = 0; i < 3; ++i) {
+    const Obstacle& obstacle = list[static_cast<size_t>(i)];
+    assert_int_equal(obstacle.id, -2 - i);
+    assert_true(obstacle.velocity_mps.isZero(0.0) && obstacle.angular_velocity_radps.isZero(0.0));
+  }
+  assert_true(load("").model.surroundings.empty());
+}
+
 void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
   const std::string error = message_of([] { load_config("firmware/config/lwa3.yaml", {}); });
   check(error.empty(), "%s", error.c_str());
@@ -198,6 +220,7 @@ int main() {
       cmocka_unit_test(every_number_arrives_where_it_belongs),
       cmocka_unit_test(every_word_arrives_where_it_belongs),
       cmocka_unit_test(a_dialect_brings_its_channels_and_its_patience),
+      cmocka_unit_test(surroundings_arrive_with_shape_and_place),
       cmocka_unit_test(the_lwa3_file_loads_and_says_what_the_defaults_say),
       cmocka_unit_test(the_papers_parameters_start_from_the_values_written_down),
       cmocka_unit_test(limits_come_from_the_config_before_the_urdf),

@@ -100,8 +100,10 @@ void clearance_after_a_while_is_that_of_the_moved_obstacles(void**) {
     const Posture posture = forward(lwa3(), random.posture(lwa3()));
     std::array<Obstacle, 5> obstacles;
     for (Obstacle& obstacle : obstacles) {
-      const Vector3 centre = random.inside(-1, 1), half = random.inside(-0.2, 0.2);
-      obstacle.capsule = {centre - half, centre + half, random.uniform(0.01, 0.1)};
+      const Vector3 centre = random.inside(-1, 1);
+      const Matrix3 rotation = random.turn().toRotationMatrix();
+      obstacle = random.chance(0.5) ? box_obstacle(centre, rotation, random.inside(0.01, 0.5))
+                                    : capsule_obstacle(centre, rotation, random.uniform(0.01, 0.1), 0.4);
       obstacle.velocity_mps = random.inside(-0.3, 0.3);
       obstacle.angular_velocity_radps = random.inside(-1, 1);
     }

@@ -74,6 +74,20 @@ void an_axis_jumps_when_an_end_of_it_does(void**) {
   assert_int_equal(scene.send({rod(c, d)}), 1);
 }
 
+/// A slab that suddenly lies flat has jumped; as a box, and at rest, it counts where it stood.
+void a_box_jumps_when_it_turns_about_its_longest_edge(void**) {
+  const Vector3 edges(1, 0.5, 0.05);
+  Obstacle standing = box_obstacle(Vector3::Zero(), Matrix3::Identity(), edges);
+  standing.velocity_mps = Vector3(0.1, 0, 0);
+  const Matrix3 quarter = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()).toRotationMatrix();
+  Scene scene;
+  scene.send({standing});
+  assert_int_equal(scene.send({box_obstacle(Vector3::Zero(), quarter * quarter, edges)}), 0);
+  assert_int_equal(scene.send({box_obstacle(Vector3::Zero(), quarter, edges)}), 1);
+  check_near(scene.last().half_width_m.cwiseAbs().eval(), standing.half_width_m, 1e-12);
+  check_near(scene.last().velocity_mps, Vector3::Zero().eval(), 0);
+}
+
 void what_comes_and_goes_does_not_jump(void**) {
   Scene scene;
   scene.send({ball(1, Vector3(0, 0, 0))});
@@ -128,6 +142,7 @@ int main() {
       cmocka_unit_test(what_jumps_counts_in_its_old_place_too_for_a_while),
       cmocka_unit_test(what_moves_as_fast_as_it_may_is_no_jump),
       cmocka_unit_test(an_axis_jumps_when_an_end_of_it_does),
+      cmocka_unit_test(a_box_jumps_when_it_turns_about_its_longest_edge),
       cmocka_unit_test(what_comes_and_goes_does_not_jump),
       cmocka_unit_test(the_order_of_a_message_does_not_matter),
       cmocka_unit_test(a_clock_that_is_set_back_forgets),

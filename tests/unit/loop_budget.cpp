@@ -25,21 +25,31 @@ struct Times {
   double median_s, p99_s, worst_s;
 };
 
-/// A target that runs around and spheres that bounce about in the arm's reach.
-Times measure(const char* law, int obstacles, int cycles, bool with_orientation) {
+enum class Kind { kSpheres, kBoxes };
+
+void add(Kind kind, Random& random, ClosedLoop& loop) {
+  const Vector3 place_m = random.inside(-0.8, 0.8) + Vector3(0, 0, 0.6), velocity_mps = random.inside(-0.3, 0.3);
+  Obstacle& added = loop.add_sphere(place_m, velocity_mps);
+  if (kind == Kind::kSpheres) return;
+  added = box_obstacle(place_m, random.turn().toRotationMatrix(), random.inside(0.02, 0.2));
+  added.velocity_mps = velocity_mps;
+  added.angular_velocity_radps = random.inside(-1, 1);
+}
+
+/// A target that runs around and obstacles that bounce about in the arm's reach.
+Times measure(const char* law, Kind kind, int obstacles, int cycles, bool with_orientation) {
   Random random(1);
   ClosedLoop loop(test::lwa3_model(law), test::home_rad());
   loop.target_speaks = true;
   loop.target.tracks_orientation = with_orientation;
-  for (int i = 0; i < obstacles; ++i)
-    loop.add_sphere(random.inside(-0.8, 0.8) + Vector3(0, 0, 0.6), random.inside(-0.3, 0.3));
+  for (int i = 0; i < obstacles; ++i) add(kind, random, loop);
   std::vector<double> times;
   while (static_cast<int>(times.size()) < cycles) {
     const double t = loop.now_s();
     loop.target.position_m = Vector3(0.4 * std::cos(0.7 * t), 0.4 * std::sin(0.7 * t), 0.7 + 0.2 * std::sin(t));
     for (int i = 0; i < obstacles; ++i) {
       Obstacle& obstacle = loop.obstacles->obstacles[static_cast<size_t>(i)];
-      const Vector3 from_middle = obstacle.capsule.start - Vector3(0, 0, 0.6);
+      const Vector3 from_middle = obstacle.capsule.centre() - Vector3(0, 0, 0.6);
       for (int axis = 0; axis < 3; ++axis)
         if (from_middle[axis] * obstacle.velocity_mps[axis] > 0 && std::abs(from_middle[axis]) > 0.8)
           obstacle.velocity_mps[axis] *= -1;
@@ -54,8 +64,9 @@ Times measure(const char* law, int obstacles, int cycles, bool with_orientation)
   }
   std::sort(times.begin(), times.end());
   const Times found{times[times.size() / 2], times[times.size() * 99 / 100], times.back()};
-  print_message("%-8s %4d obstacles%s: median %6.1f us, 99 %% below %6.1f us, worst %6.1f us\n", law, obstacles,
-                with_orientation ? ", pose" : "      ", found.median_s * 1e6, found.p99_s * 1e6, found.worst_s * 1e6);
+  print_message("%-8s %4d %s%s: median %6.1f us, 99 %% below %6.1f us, worst %6.1f us\n", law, obstacles,
+                kind == Kind::kBoxes ? "boxes  " : "spheres", with_orientation ? ", pose" : "      ",
+                found.median_s * 1e6, found.p99_s * 1e6, found.worst_s * 1e6);
   return found;
 }
 
@@ -64,17 +75,24 @@ Times measure(const char* law, int obstacles, int cycles, bool with_orientation)
 void a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period(void**) {
   for (const auto& [law, slowest_s] : {std::pair{"paper", 2e-3}, {"sidestep", 4e-3}}) {
     for (const bool with_orientation : {false, true}) {
-      const Times times = measure(law, 50, 3000, with_orientation);
+      const Times times = measure(law, Kind::kSpheres, 50, 3000, with_orientation);
       check(times.median_s < 500e-6, "%s: median %g s", law, times.median_s);
       check(times.p99_s < slowest_s, "%s: p99 %g s", law, times.p99_s);
     }
   }
 }
 
+void a_cycle_among_50_boxes_that_turn_does_too(void**) {
+  const Times times = measure("sidestep", Kind::kBoxes, 50, 1000, false);
+  check(times.median_s < 1e-3 && times.p99_s < 5e-3, "median %g s, p99 %g s", times.median_s, times.p99_s);
+}
+
 void even_as_many_obstacles_as_a_message_holds_fit_into_the_period(void**) {
   for (const char* law : {"paper", "sidestep"}) {
-    const Times times = measure(law, kMaxObstacles, 200, false);
-    check(times.median_s < 10e-3, "%s: median %g s", law, times.median_s);
+    for (const Kind kind : {Kind::kSpheres, Kind::kBoxes}) {
+      const Times times = measure(law, kind, kMaxObstacles, 200, false);
+      check(times.median_s < 10e-3, "%s: median %g s", law, times.median_s);
+    }
   }
 }
 
@@ -83,6 +101,7 @@ void even_as_many_obstacles_as_a_message_holds_fit_into_the_period(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period),
+      cmocka_unit_test(a_cycle_among_50_boxes_that_turn_does_too),
       cmocka_unit_test(even_as_many_obstacles_as_a_message_holds_fit_into_the_period),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

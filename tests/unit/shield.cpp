@@ -70,7 +70,7 @@ struct Scene {
     evasion_radps = given.plan.evading ? given.plan.velocity_radps : JointVector();
     for (int i = 0; i < set.count; ++i) {
       Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)];
-      obstacle.capsule = moved(obstacle, kPeriod_s);
+      obstacle = moved(obstacle, kPeriod_s);
     }
     return given;
   }
