@@ -162,7 +162,7 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@

@@ -32,24 +32,7 @@ std::vector<Family> make_families() {
   return all;
 }
 
-Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, double velocity_radps) {
-  Limits limits;
-  limits.upper_rad << odd_rad, rad_2, odd_rad, rad_4, odd_rad, rad_6, odd_rad;
-  limits.lower_rad = -limits.upper_rad;
-  limits.velocity_radps.setConstant(velocity_radps);
-  limits.acceleration_radps2.setConstant(10.0);
-  return limits;
-}
-
 }  // namespace
-
-Limits benchmark_limits() {
-  return symmetric(2.9, 1.9, 2.1, 2.0, 1.2);
-}
-
-Limits Family::limits() const {
-  return dodge ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : benchmark_limits();
-}
 
 const std::vector<Family>& families() {
   static const std::vector<Family> all = make_families();

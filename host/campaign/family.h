@@ -3,14 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "host/campaign/judge_arm.h"
-
 namespace sidestep::campaign {
-
-/// Joint limits, one value per joint.
-struct Limits {
-  Joints lower_rad, upper_rad, velocity_radps, acceleration_radps2;
-};
 
 /// A kind of scene, and how it differs from the others.
 struct Family {
@@ -23,8 +16,6 @@ struct Family {
   bool real = false;     ///< noise, delay and loss on the obstacles, lag in the arm
   bool dodge = false;    ///< hold the tool while all obstacles fly through the arm at once
   bool hold_orientation = false;
-
-  Limits limits() const;
 };
 
 /// All of them, in the order of the tables.
@@ -35,8 +26,5 @@ const Family& family_named(const std::string& name);
 
 /// What `--family` may say: a family's name, `dodge` for all its variants, or `all`. Throws as above.
 std::vector<const Family*> families_of(const std::string& word);
-
-/// Joint range from which scenes are drawn: the limits of all families but dodge.
-Limits benchmark_limits();
 
 }  // namespace sidestep::campaign

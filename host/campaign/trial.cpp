@@ -17,8 +17,8 @@ sim::PlantSpec plant_of(const Scene& scene) {
   if (!scene.family->real) return spec;
   spec.kind = sim::PlantSpec::Kind::kServo;
   spec.lag_s = kPlantLag_s;
-  spec.velocity_limit_radps = scene.family->limits().velocity_radps;
-  spec.acceleration_limit_radps2 = Joints::Constant(kPlantAcceleration_radps2);
+  spec.velocity_limit_radps = scene.arm->limits(*scene.family).velocity_radps;
+  spec.acceleration_limit_radps2 = Joints::Constant(scene.start_rad.size(), kPlantAcceleration_radps2);
   return spec;
 }
 
@@ -30,7 +30,7 @@ class Loop {
         pilot_(pilot),
         plant_(plant_of(scene), scene.start_rad),
         sensing_(scene),
-        orientation_(pose(scene.start_rad).tool_rotation) {}
+        orientation_(scene.arm->pose(scene.start_rad).tool_rotation) {}
 
   const sim::Plant& plant() const { return plant_; }
 
