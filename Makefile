@@ -56,8 +56,9 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## hold the arm to Pinocchio, on arms of example-robot-data (installs both)
+peers-test: all $(BUILD)/.python-peers ## arms of example-robot-data: held to Pinocchio, 100 witnessed scenes (10 min)
 	@$(PYTHON) tests/peers/kinematics.py
+	@$(PYTHON) tests/peers/scenes.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
 	@$(MAKE) $(FUZZERS)

@@ -20,6 +20,13 @@ std::vector<Family> make_families() {
   all[5].erratic = true;
   all[6].real = true;
   all[6].stream = "moving";
+  const auto add_full_pose = [&all](const std::string& name, const std::string& stream, int most_obstacles) {
+    Family family{name, stream, most_obstacles, 0.3};
+    family.chase = family.full_pose = true;
+    all.push_back(family);
+  };
+  add_full_pose("follow6d", "follow6d", 0);
+  add_full_pose("chase6d", "chase", 6);
   const auto add_dodge = [&all](const char* kind, int spheres, double speed_mps, bool hold_orientation) {
     Family family{fmt::format("{}@{}", kind, speed_mps), "dodge", spheres, speed_mps};
     family.dodge = true;

@@ -74,7 +74,9 @@ void Judge::see_tool(const ArmPose& arm, double t_s) {
   if (error_m < kArrived_m) ++on_target_;
   squares_m2_ += error_m * error_m;
   outcome_.error_max_m = std::fmax(outcome_.error_max_m, error_m);
-  const double turn_rad = Eigen::AngleAxisd(arm.tool_rotation * start_rotation_.transpose()).angle();
+  const Matrix3 wanted =
+      scene_.family->full_pose ? turning_at(scene_, t_s)->orientation.toRotationMatrix() : start_rotation_;
+  const double turn_rad = Eigen::AngleAxisd(arm.tool_rotation * wanted.transpose()).angle();
   squares_rad2_ += turn_rad * turn_rad;
 }
 
@@ -90,7 +92,8 @@ Outcome Judge::verdict() const {
   if (outcome.final_error_m < kArrived_m) outcome.arrival_s = far_until_s_ < 0.0 ? 0.0 : far_until_s_ + kPeriod_s;
   if (counted_ > 0) outcome.error_rms_m = std::sqrt(squares_m2_ / counted_);
   if (counted_ > 0 && scene_.family->chase) outcome.on_target_share = static_cast<double>(on_target_) / counted_;
-  if (counted_ > 0 && scene_.family->dodge) outcome.turn_rms_rad = std::sqrt(squares_rad2_ / counted_);
+  if (counted_ > 0 && (scene_.family->dodge || scene_.family->full_pose))
+    outcome.turn_rms_rad = std::sqrt(squares_rad2_ / counted_);
   outcome.speed_radps = smoothness_.speed_radps();
   outcome.acceleration_radps2 = smoothness_.acceleration_radps2();
   outcome.jerk_radps3 = smoothness_.jerk_radps3();

@@ -30,7 +30,8 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--family", options.family, "moving, fast, crowd, clutter, chase, erratic, real, dodge, or all")
+  app.add_option("--family", options.family,
+                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
       ->capture_default_str();
   app.add_option("--count", options.count, "scenes of each family")
       ->capture_default_str()

@@ -31,8 +31,11 @@ class Controller : public Pilot {
     target_.utime = seen.now_us;
     target_.position_m = seen.target.position_m;
     target_.velocity_mps = seen.target.velocity_mps;
-    target_.tracks_orientation = seen.orientation != nullptr;
-    if (seen.orientation) target_.orientation = *seen.orientation;
+    target_.tracks_orientation = seen.turning.has_value();
+    if (seen.turning) {
+      target_.orientation = seen.turning->orientation;
+      target_.angular_velocity_radps = seen.turning->velocity_radps;
+    }
     if (seen.obstacles.count != obstacles_count_) take(seen.obstacles);
 
     Inputs inputs;

@@ -14,7 +14,7 @@ struct Seen {
   const Joints& q_rad;
   const Joints& qd_radps;
   const Moving& target;
-  const Eigen::Quaterniond* orientation;  ///< to be held by the tool, or null
+  const std::optional<Turning>& turning;
   const Sighting& obstacles;
 };
 

@@ -76,6 +76,7 @@ Scene scene_named(const std::string& name, const JudgeArm& arm) {
 
 std::string scenario_yaml(const Scene& scene) {
   const Family& family = *scene.family;
+  if (family.full_pose) throw std::runtime_error("--replay: the simulator's targets cannot turn as a witness does");
   std::string text = fmt::format("# Written by: build/campaign --replay {}:{}\n", family.name, scene.seed);
   if (family.real)
     text += "# In the benchmark the obstacle messages are noisy, late and incomplete; here they are exact.\n";

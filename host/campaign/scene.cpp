@@ -27,6 +27,13 @@ Moving target_at(const Scene& scene, double t_s) {
   return {witness.tool(), tool_jacobian(witness) * witness_radps(scene, t_s)};
 }
 
+std::optional<Turning> turning_at(const Scene& scene, double t_s) {
+  const Family& family = *scene.family;
+  if (!family.full_pose && !family.hold_orientation) return std::nullopt;
+  const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
+  return Turning{Eigen::Quaterniond(witness.tool_rotation), tool_radps(witness, witness_radps(scene, t_s))};
+}
+
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
   double least_m = within_m;
   for (const SpherePath& sphere : scene.spheres)

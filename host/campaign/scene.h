@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "host/campaign/family.h"
@@ -41,6 +42,15 @@ Joints witness_radps(const Scene& scene, double t_s);
 
 /// Where the tool shall be. Frozen before t = 0.
 Moving target_at(const Scene& scene, double t_s);
+
+/// How the tool shall be turned, and turn.
+struct Turning {
+  Eigen::Quaterniond orientation;
+  Vector3 velocity_radps;
+};
+
+/// Absent where only the tool's position matters.
+std::optional<Turning> turning_at(const Scene& scene, double t_s);
 
 /// Least clearance of the arm to all spheres at time t; within_m when it is not below that.
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);

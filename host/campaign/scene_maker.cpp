@@ -80,7 +80,8 @@ bool belongs(const JudgeArm& arm, const std::vector<ArmPose>& witness, const Sph
 
 bool draw_spheres(Random& random, Scene& scene) {
   scene.spheres.clear();
-  const auto wanted = static_cast<size_t>(random.whole(1, scene.family->most_obstacles));
+  const int most = scene.family->most_obstacles;
+  const auto wanted = static_cast<size_t>(random.whole(std::min(1, most), most));
   const std::vector<ArmPose> witness = witness_poses(scene);
   if (witness.empty()) return false;
   for (int draw = 0; draw < kMostDraws && scene.spheres.size() < wanted; ++draw) {
@@ -98,7 +99,8 @@ Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
   bool kept = false;
   while (!kept)
     kept = family.dodge ? make_dodge(random, scene, draw_posture(random, arm, 0.7, kNoFloor))
-                        : draw_witness(random, scene) && draw_spheres(random, scene) && plain_tracking_hits(scene);
+                        : draw_witness(random, scene) && draw_spheres(random, scene) &&
+                              (scene.spheres.empty() || plain_tracking_hits(scene));
   return scene;
 }
 

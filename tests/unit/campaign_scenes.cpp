@@ -69,8 +69,9 @@ void start_and_goal_are_above_the_floor(void**) {
 void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
   for_each_scene(false, [](const Scene& scene) {
     const Family& family = *scene.family;
-    check(!scene.spheres.empty() && scene.spheres.size() <= static_cast<size_t>(family.most_obstacles), "%s",
-          name(scene).c_str());
+    check(scene.spheres.empty() == (family.most_obstacles == 0) &&
+              scene.spheres.size() <= static_cast<size_t>(family.most_obstacles),
+          "%s", name(scene).c_str());
     for (const SpherePath& sphere : scene.spheres) {
       check(sphere.straight() != family.erratic, "%s", name(scene).c_str());
       for (double t_s = 0.0; t_s <= scene.duration_s(); t_s += 0.05)
@@ -81,7 +82,9 @@ void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
 }
 
 void plain_tracking_hits_in_every_scene(void**) {
-  for_each_scene(false, [](const Scene& scene) { check(plain_tracking_hits(scene), "%s", name(scene).c_str()); });
+  for_each_scene(false, [](const Scene& scene) {
+    check(plain_tracking_hits(scene) != scene.spheres.empty(), "%s", name(scene).c_str());
+  });
 }
 
 void the_target_of_a_chase_is_the_witnesss_tool(void**) {
@@ -94,6 +97,18 @@ void the_target_of_a_chase_is_the_witnesss_tool(void**) {
           (target_at(scene, t_s + 1e-5).position_m - target_at(scene, t_s - 1e-5).position_m) / 2e-5;
       check_near(target.velocity_mps, slope_mps, 1e-4);
     }
+  }
+}
+
+void the_target_of_a_full_pose_turns_as_the_witness(void**) {
+  const Scene scene = make_scene(family_named("chase6d"), 3), moving = make_scene(family_named("chase"), 3);
+  check_near(scene.goal_rad, moving.goal_rad, 0.0);
+  check(!turning_at(moving, 1.0), "a chase has no orientation");
+  for (double t_s = 0.02; t_s < scene.duration_s() - 0.02; t_s += 0.05) {
+    const auto turning = turning_at(scene, t_s), later = turning_at(scene, t_s + 1e-5);
+    check_near(turning->orientation.toRotationMatrix(), lwa3_arm().pose(witness_rad(scene, t_s)).tool_rotation, 1e-12);
+    const Eigen::AngleAxisd turned(later->orientation * turning->orientation.conjugate());
+    check_near(turning->velocity_radps, Vector3(turned.angle() / 1e-5 * turned.axis()), 1e-3);
   }
 }
 
@@ -163,6 +178,7 @@ int main() {
       cmocka_unit_test(spheres_are_as_many_and_as_fast_as_the_family_says),
       cmocka_unit_test(plain_tracking_hits_in_every_scene),
       cmocka_unit_test(the_target_of_a_chase_is_the_witnesss_tool),
+      cmocka_unit_test(the_target_of_a_full_pose_turns_as_the_witness),
       cmocka_unit_test(a_seed_is_a_scene),
       cmocka_unit_test(real_has_the_scenes_of_moving),
       cmocka_unit_test(dodged_spheres_go_through_the_arm_past_the_column),
