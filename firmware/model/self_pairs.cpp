@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr int kSamples = 200;
-constexpr double kBuiltThatWay = 0.5;  // share of postures in which such a pair is near
+constexpr double kBuiltThatWay = 0.5;  // share of postures in which such a pair touches
 
 bool neighbours(const Arm& arm, int a, int b) {
   const auto [low, high] = std::minmax(arm.shapes[a].body, arm.shapes[b].body);
@@ -50,17 +50,20 @@ Pairs sort_pairs(const Arm& arm, double clearance_m) {
     for (int b = 0; b < a; ++b)
       if (!neighbours(arm, a, b)) all.emplace_back(b, a);
 
-  std::vector<int> near(all.size(), 0);
+  std::vector<int> touching(all.size(), 0), near(all.size(), 0);
   std::mt19937 random(1);
   for (int i = 0; i < kSamples; ++i) {
     const Posture posture = forward(arm, sample(arm, random));
-    for (size_t p = 0; p < all.size(); ++p)
-      if (nearer(arm, posture, all[p], clearance_m)) ++near[p];
+    for (size_t p = 0; p < all.size(); ++p) {
+      touching[p] += nearer(arm, posture, all[p], 0.0);
+      near[p] += nearer(arm, posture, all[p], clearance_m);
+    }
   }
   const Posture rest = forward(arm, at_rest(arm));
   Pairs pairs;
   for (size_t p = 0; p < all.size(); ++p) {
-    const bool built_that_way = near[p] > kBuiltThatWay * kSamples || nearer(arm, rest, all[p], 0.0);
+    const bool built_that_way =
+        touching[p] > kBuiltThatWay * kSamples || near[p] == kSamples || nearer(arm, rest, all[p], 0.0);
     (built_that_way ? pairs.overlaps : pairs.free).push_back(all[p]);
   }
   return pairs;
