@@ -56,9 +56,10 @@ test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed
 faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## the arms against Pinocchio; Drake's simulated iiwa in the loop for a minute (installs both)
+peers-test: all $(BUILD)/.python-peers ## Pinocchio, 100 witnessed scenes with arms of others, Drake's iiwa in the loop (10 min)
 	@$(PYTHON) tests/peers/kinematics.py
 	@$(PYTHON) tests/peers/iiwa.py
+	@$(PYTHON) tests/peers/scenes.py
 
 fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
 	@$(MAKE) $(FUZZERS)
@@ -163,7 +164,7 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
 
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@

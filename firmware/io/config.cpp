@@ -198,24 +198,24 @@ void read_dialect(Section& root, Config& config) {
   config.channels.arm_command = "IIWA_COMMAND";
 }
 
-Arm read_robot(Section robot, const std::string& config_file, const Overrides& overrides) {
-  std::string urdf, base, tip;
-  robot.text("urdf", urdf);
-  robot.text("base", base);
-  robot.text("tip", tip);
-  MeshOptions meshes;
-  robot.texts("package_path", meshes.package_path);
-  double capsules_per_mesh = meshes.capsules_per_mesh;
-  robot.number("capsules_per_mesh", capsules_per_mesh, 1.0, 8.0);
-  meshes.capsules_per_mesh = static_cast<int>(capsules_per_mesh);
-  robot.finish();
-  if (!overrides.urdf.empty()) urdf = overrides.urdf;
-  if (!overrides.base.empty()) base = overrides.base;
-  if (!overrides.tip.empty()) tip = overrides.tip;
-  if (urdf.empty()) robot.fail("urdf", "is missing (or give --urdf)");
-  if (base.empty()) robot.fail("base", "is missing (or give --base)");
-  if (tip.empty()) robot.fail("tip", "is missing (or give --tip)");
-  return load_arm(overrides.urdf.empty() ? find_urdf(config_file, urdf) : urdf, base, tip, meshes);
+Robot read_robot(Section section, const std::string& config_file, const Overrides& overrides) {
+  Robot robot;
+  section.text("urdf", robot.urdf);
+  section.text("base", robot.base);
+  section.text("tip", robot.tip);
+  section.texts("package_path", robot.meshes.package_path);
+  double capsules_per_mesh = robot.meshes.capsules_per_mesh;
+  section.number("capsules_per_mesh", capsules_per_mesh, 1.0, 8.0);
+  robot.meshes.capsules_per_mesh = static_cast<int>(capsules_per_mesh);
+  section.finish();
+  if (!overrides.urdf.empty()) robot.urdf = overrides.urdf;
+  if (!overrides.base.empty()) robot.base = overrides.base;
+  if (!overrides.tip.empty()) robot.tip = overrides.tip;
+  if (robot.urdf.empty()) section.fail("urdf", "is missing (or give --urdf)");
+  if (robot.base.empty()) section.fail("base", "is missing (or give --base)");
+  if (robot.tip.empty()) section.fail("tip", "is missing (or give --tip)");
+  if (overrides.urdf.empty()) robot.urdf = find_urdf(config_file, robot.urdf);
+  return robot;
 }
 
 }  // namespace
@@ -232,7 +232,9 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   if (!overrides.law.empty()) law = overrides.law;
   settings.law = law == "paper" ? Law::kPaper : Law::kSidestep;
 
-  config.model.arm = read_robot(root.section("robot"), file, overrides);
+  config.robot = read_robot(root.section("robot"), file, overrides);
+  const Robot& robot = config.robot;
+  config.model.arm = load_arm(robot.urdf, robot.base, robot.tip, robot.meshes);
   read_dialect(root, config);
   read_limits(root.section("limits"), config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
@@ -247,7 +249,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_foresight(root.section("foresight"), settings.foresight);
   config.model.surroundings = read_surroundings(root);
   root.finish();
-  config.model.self_pairs = find_self_pairs(config.model.arm);  // takes a while
+  config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // takes a while
   return config;
 }
 

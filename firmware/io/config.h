@@ -40,8 +40,17 @@ struct Overrides {
   double rate_hz = 0.0;
 };
 
+/// The arm's description; config section `robot:`.
+struct Robot {
+  std::string urdf;  ///< as found
+  std::string base;
+  std::string tip;
+  MeshOptions meshes;
+};
+
 /// A configuration, complete and checked.
 struct Config {
+  Robot robot;
   Model model;
   Dialect dialect = Dialect::kSidestep;
   Channels channels;

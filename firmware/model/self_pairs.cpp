@@ -33,34 +33,37 @@ JointVector at_rest(const Arm& arm) {
   return middle_rad.array().isFinite().select(middle_rad, 0.0);
 }
 
-bool touch(const Arm& arm, const Posture& posture, const std::pair<int, int>& pair) {
+bool nearer(const Arm& arm, const Posture& posture, const std::pair<int, int>& pair, double distance_m) {
   const Capsule a = placed(posture, arm.shapes[pair.first]), b = placed(posture, arm.shapes[pair.second]);
   const NearestPoints points = nearest_on_axes(a, b);
-  return (points.a - points.b).norm() < a.radius_m + b.radius_m;
+  return (points.a - points.b).norm() < a.radius_m + b.radius_m + distance_m;
 }
 
-/// The pairs of shapes that are no neighbours; `overlaps`: those that touch because they are built that way.
+/// The pairs of shapes that are no neighbours; `overlaps`: those that are near because they are built that way.
 struct Pairs {
   std::vector<std::pair<int, int>> free, overlaps;
 };
 
-Pairs sort_pairs(const Arm& arm) {
+Pairs sort_pairs(const Arm& arm, double clearance_m) {
   std::vector<std::pair<int, int>> all;
   for (int a = 0; a < static_cast<int>(arm.shapes.size()); ++a)
     for (int b = 0; b < a; ++b)
       if (!neighbours(arm, a, b)) all.emplace_back(b, a);
 
-  std::vector<int> touching(all.size(), 0);
+  std::vector<int> touching(all.size(), 0), near(all.size(), 0);
   std::mt19937 random(1);
   for (int i = 0; i < kSamples; ++i) {
     const Posture posture = forward(arm, sample(arm, random));
-    for (size_t p = 0; p < all.size(); ++p)
-      if (touch(arm, posture, all[p])) ++touching[p];
+    for (size_t p = 0; p < all.size(); ++p) {
+      touching[p] += nearer(arm, posture, all[p], 0.0);
+      near[p] += nearer(arm, posture, all[p], clearance_m);
+    }
   }
   const Posture rest = forward(arm, at_rest(arm));
   Pairs pairs;
   for (size_t p = 0; p < all.size(); ++p) {
-    const bool built_that_way = touching[p] > kBuiltThatWay * kSamples || touch(arm, rest, all[p]);
+    const bool built_that_way =
+        touching[p] > kBuiltThatWay * kSamples || near[p] == kSamples || nearer(arm, rest, all[p], 0.0);
     (built_that_way ? pairs.overlaps : pairs.free).push_back(all[p]);
   }
   return pairs;
@@ -68,12 +71,12 @@ Pairs sort_pairs(const Arm& arm) {
 
 }  // namespace
 
-std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm) {
-  return sort_pairs(arm).free;
+std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm, double clearance_m) {
+  return sort_pairs(arm, clearance_m).free;
 }
 
-std::vector<std::pair<int, int>> find_overlaps(const Arm& arm) {
-  return sort_pairs(arm).overlaps;
+std::vector<std::pair<int, int>> find_overlaps(const Arm& arm, double clearance_m) {
+  return sort_pairs(arm, clearance_m).overlaps;
 }
 
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 
+#include "firmware/control/settings.h"
 #include "firmware/model/arm.h"
 #include "firmware/model/kinematics.h"
 #include "firmware/model/self_pairs.h"
@@ -72,7 +73,7 @@ std::vector<std::string> odd_shapes(const Arm& arm) {
         fmt::format("link '{}': its capsules stand out {:.3f} m from the mesh; try --capsules-per-mesh 4 "
                     "(robot.capsules_per_mesh in a configuration)",
                     link, slack_m));
-  for (const auto& [a, b] : find_overlaps(arm))
+  for (const auto& [a, b] : find_overlaps(arm, ShieldSettings{}.self_clearance_m))
     odd.push_back(fmt::format("links '{}' and '{}' overlap as they are built: they are not kept apart",
                               arm.shapes[static_cast<size_t>(a)].link, arm.shapes[static_cast<size_t>(b)].link));
   return odd;
@@ -117,7 +118,8 @@ int run(const Arguments& arguments) {
   }
   print_joints(arm);
   print_shapes(arm);
-  fmt::print("{} pairs of capsules are kept apart from each other\n", find_self_pairs(arm).size());
+  fmt::print("{} pairs of capsules are kept apart from each other\n",
+             find_self_pairs(arm, ShieldSettings{}.self_clearance_m).size());
   check_limits(arm);
   std::vector<std::string> odd = arm.remarks;
   for (const auto& more : {odd_joints(arm), odd_shapes(arm)}) odd.insert(odd.end(), more.begin(), more.end());

@@ -14,16 +14,16 @@ constexpr double kReturn_s = 2.0;
 constexpr int kMostDraws = 10'000;
 
 /// Start and direction of a sphere's line.
-bool draw_line(Random& random, const ArmPose& arm, Vector3& start_m, Vector3& direction) {
-  const auto link = static_cast<size_t>(random.whole(1, 3));
+bool draw_line(Random& random, const JudgeArm& arm, const ArmPose& pose, Vector3& start_m, Vector3& direction) {
+  const auto link = static_cast<size_t>(random.whole(1, static_cast<int>(pose.corners.size()) - 2));
   const double share = random.uniform(0.0, 1.0);
-  const Vector3 crossing_m = arm.corners[link] + share * (arm.corners[link + 1] - arm.corners[link]);
+  const Vector3 crossing_m = pose.corners[link] + share * (pose.corners[link + 1] - pose.corners[link]);
   direction = random.direction();
   start_m = crossing_m - kRunUp_m * direction;
   const NearestPoints nearest =
-      nearest_on_axes({arm.corners[0], arm.corners[1], 0.0}, {start_m, crossing_m + kWayOn_m * direction, 0.0});
+      nearest_on_axes({pose.corners[0], pose.corners[1], 0.0}, {start_m, crossing_m + kWayOn_m * direction, 0.0});
   return (nearest.a - nearest.b).norm() >= kColumnDistance_m &&
-         clearance(arm, start_m, kSphereRadius_m) >= kStartClearance_m;
+         arm.clearance(pose, start_m, kSphereRadius_m) >= kStartClearance_m;
 }
 
 }  // namespace
@@ -33,12 +33,13 @@ bool make_dodge(Random& random, Scene& scene, const Joints& start_rad) {
   scene.start_rad = scene.goal_rad = start_rad;
   scene.crossing_s = kRunUp_m / family.speed_mps;
   scene.periods = static_cast<int>(std::ceil((pass_ends_s(scene) + kReturn_s) / kPeriod_s));
-  const ArmPose arm = pose(start_rad);
+  const ArmPose pose = scene.arm->pose(start_rad);
   Vector3 start_m, direction;
   const auto wanted = static_cast<size_t>(family.most_obstacles);
   scene.spheres.clear();
   for (int draw = 0; draw < kMostDraws && scene.spheres.size() < wanted; ++draw)
-    if (draw_line(random, arm, start_m, direction)) scene.spheres.emplace_back(start_m, family.speed_mps * direction);
+    if (draw_line(random, *scene.arm, pose, start_m, direction))
+      scene.spheres.emplace_back(start_m, family.speed_mps * direction);
   return scene.spheres.size() == wanted;
 }
 

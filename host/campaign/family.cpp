@@ -20,6 +20,13 @@ std::vector<Family> make_families() {
   all[5].erratic = true;
   all[6].real = true;
   all[6].stream = "moving";
+  const auto add_full_pose = [&all](const std::string& name, const std::string& stream, int most_obstacles) {
+    Family family{name, stream, most_obstacles, 0.3};
+    family.chase = family.full_pose = true;
+    all.push_back(family);
+  };
+  add_full_pose("follow6d", "follow6d", 0);
+  add_full_pose("chase6d", "chase", 6);
   const auto add_dodge = [&all](const char* kind, int spheres, double speed_mps, bool hold_orientation) {
     Family family{fmt::format("{}@{}", kind, speed_mps), "dodge", spheres, speed_mps};
     family.dodge = true;
@@ -32,24 +39,7 @@ std::vector<Family> make_families() {
   return all;
 }
 
-Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, double velocity_radps) {
-  Limits limits;
-  limits.upper_rad << odd_rad, rad_2, odd_rad, rad_4, odd_rad, rad_6, odd_rad;
-  limits.lower_rad = -limits.upper_rad;
-  limits.velocity_radps.setConstant(velocity_radps);
-  limits.acceleration_radps2.setConstant(10.0);
-  return limits;
-}
-
 }  // namespace
-
-Limits benchmark_limits() {
-  return symmetric(2.9, 1.9, 2.1, 2.0, 1.2);
-}
-
-Limits Family::limits() const {
-  return dodge ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : benchmark_limits();
-}
 
 const std::vector<Family>& families() {
   static const std::vector<Family> all = make_families();

@@ -3,28 +3,20 @@
 #include <string>
 #include <vector>
 
-#include "host/campaign/judge_arm.h"
-
 namespace sidestep::campaign {
-
-/// Joint limits, one value per joint.
-struct Limits {
-  Joints lower_rad, upper_rad, velocity_radps, acceleration_radps2;
-};
 
 /// A kind of scene, and how it differs from the others.
 struct Family {
   std::string name;
-  std::string stream;  ///< of random numbers: families with the same stream get the same scenes for the same seed
-  int most_obstacles;
-  double speed_mps;      ///< the largest of an obstacle; of every one in a dodge
-  bool chase = false;    ///< the target moves along the witness's tool path
-  bool erratic = false;  ///< obstacles change their velocity
-  bool real = false;     ///< noise, delay and loss on the obstacles, lag in the arm
-  bool dodge = false;    ///< hold the tool while all obstacles fly through the arm at once
+  std::string stream;      ///< of random numbers: families with the same stream get the same scenes for the same seed
+  int most_obstacles;      ///< 0: none, and nothing to hit
+  double speed_mps;        ///< the largest of an obstacle; of every one in a dodge
+  bool chase = false;      ///< the target moves along the witness's tool path
+  bool full_pose = false;  ///< of a chase: the target turns with the witness's tool
+  bool erratic = false;    ///< obstacles change their velocity
+  bool real = false;       ///< noise, delay and loss on the obstacles, lag in the arm
+  bool dodge = false;      ///< hold the tool while all obstacles fly through the arm at once
   bool hold_orientation = false;
-
-  Limits limits() const;
 };
 
 /// All of them, in the order of the tables.
@@ -35,8 +27,5 @@ const Family& family_named(const std::string& name);
 
 /// What `--family` may say: a family's name, `dodge` for all its variants, or `all`. Throws as above.
 std::vector<const Family*> families_of(const std::string& word);
-
-/// Joint range from which scenes are drawn: the limits of all families but dodge.
-Limits benchmark_limits();
 
 }  // namespace sidestep::campaign

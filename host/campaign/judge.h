@@ -22,6 +22,8 @@ class Judge {
   Outcome verdict() const;
 
  private:
+  /// At this period and, near an obstacle, between the last one and this.
+  void see_clearance(const ArmPose& arm, const Joints& q_rad, double t_s);
   void see_joints(const Joints& q_rad);
   void see_tool(const ArmPose& arm, double t_s);
   /// Whether the tool error counts for its root mean square.

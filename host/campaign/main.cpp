@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <thread>
 
 #include "firmware/io/config.h"
@@ -23,7 +22,7 @@ enum ExitCode { kDone = 0, kBadInput = 2, kInterruptedBySignal = 130 };
 std::atomic<bool> interrupted{false};
 
 struct Options {
-  std::string family = "all", law = "sidestep", config, shard = "1/1", csv, replay, output;
+  std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, replay, output;
   uint64_t count = 500, seed = 1;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool quiet = false, smoothness = false, no_cpu = false;
@@ -31,7 +30,8 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--family", options.family, "moving, fast, crowd, clutter, chase, erratic, real, dodge, or all")
+  app.add_option("--family", options.family,
+                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
       ->capture_default_str();
   app.add_option("--count", options.count, "scenes of each family")
       ->capture_default_str()
@@ -42,8 +42,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--law", options.law, "sidestep, paper, or plain (attraction only)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sidestep", "paper", "plain"}));
-  app.add_option("--config", options.config, "of the controller (default: firmware/config/lwa3.yaml here or above)")
+  app.add_option("--config", options.config,
+                 "of the controller and its arm (default: firmware/config/lwa3.yaml here or above)")
       ->type_name("FILE");
+  app.add_option("--urdf", options.urdf, "of the arm, over what the configuration says; alone: the rest is default")
+      ->type_name("FILE");
+  app.add_option("--base", options.base, "first link of the arm")->type_name("LINK");
+  app.add_option("--tip", options.tip, "last link of the arm")->type_name("LINK");
   app.add_option("--shard", options.shard, "only every n-th scene, from the i-th on")
       ->capture_default_str()
       ->type_name("I/N");
@@ -102,16 +107,18 @@ void publish(std::vector<Row> rows, const Options& options) {
   if (options.smoothness) fmt::print("{}", smoothness_table(rows));
 }
 
+/// As the controller itself would have it; for the benchmark's own arm if nothing is said.
+Config config_of(const Options& options) {
+  Overrides overrides{options.law == "plain" ? "" : options.law, options.urdf, options.base, options.tip};
+  return load_config(options.config.empty() && options.urdf.empty() ? default_config() : options.config, overrides);
+}
+
 int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
-  std::optional<Model> model;
-  if (options.law != "plain") {
-    Overrides overrides;
-    overrides.law = options.law;
-    model = load_config(options.config.empty() ? default_config() : options.config, overrides).model;
-  }
+  const Config config = config_of(options);
+  const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
   if (!options.csv.empty()) write_csv(options.csv, {});  // fail now rather than after the work
-  const Entrant entrant{options.law, model ? &*model : nullptr};
+  const Entrant entrant{options.law, options.law == "plain" ? nullptr : &config.model, *arm};
   const std::vector<Row> rows = run(tasks, entrant, options.jobs, options.quiet, interrupted);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;
@@ -130,7 +137,8 @@ int merge(const Options& options) {
 }
 
 int write_replay(const Options& options) {
-  const std::string yaml = scenario_yaml(scene_named(options.replay));
+  const std::unique_ptr<JudgeArm> arm = judge_arm_of(config_of(options));
+  const std::string yaml = scenario_yaml(scene_named(options.replay, *arm));
   if (options.output.empty()) {
     fmt::print("{}", yaml);
     return kDone;

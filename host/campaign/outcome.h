@@ -19,7 +19,7 @@ struct Outcome {
   double error_rms_m = kNone;  ///< chase: once caught; dodge: during the pass
   double error_max_m = kNone;
   double on_target_share = kNone;      ///< chase: of the time once caught, with an error below kArrived_m
-  double turn_rms_rad = kNone;         ///< dodge: of the tool's orientation, during the pass
+  double turn_rms_rad = kNone;         ///< likewise, of the tool's orientation; not of a mere position
   double limit_margin_rad = kNone;     ///< least of a joint to a position limit; negative beyond one
   double speed_radps = kNone;          ///< largest of a joint, of the commands
   double acceleration_radps2 = kNone;  ///< likewise

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "firmware/foresight/foresight.h"
-#include "firmware/model/kinematics.h"
 #include "host/campaign/plain_tracking.h"
 
 namespace sidestep::campaign {
@@ -32,8 +31,11 @@ class Controller : public Pilot {
     target_.utime = seen.now_us;
     target_.position_m = seen.target.position_m;
     target_.velocity_mps = seen.target.velocity_mps;
-    target_.tracks_orientation = seen.orientation != nullptr;
-    if (seen.orientation) target_.orientation = *seen.orientation;
+    target_.tracks_orientation = seen.turning.has_value();
+    if (seen.turning) {
+      target_.orientation = seen.turning->orientation;
+      target_.angular_velocity_radps = seen.turning->velocity_radps;
+    }
     if (seen.obstacles.count != obstacles_count_) take(seen.obstacles);
 
     Inputs inputs;
@@ -99,39 +101,34 @@ class Controller : public Pilot {
 
 class PlainTracker : public Pilot {
  public:
-  explicit PlainTracker(const Limits& limits) : limits_(limits) {}
+  PlainTracker(const JudgeArm& arm, const Limits& limits) : arm_(arm), limits_(limits) {}
 
   Steering cycle(const Seen& seen) override {
     const double begin_s = thread_cpu_s();
     Steering steering;
-    steering.velocity_radps = plain_tracking(limits_, seen.target, seen.q_rad, seen.qd_radps);
+    steering.velocity_radps = plain_tracking(arm_, limits_, seen.target, seen.q_rad, seen.qd_radps);
     steering.cpu_s = thread_cpu_s() - begin_s;
     steering.tracking = true;
     return steering;
   }
 
  private:
+  const JudgeArm& arm_;
   Limits limits_;
 };
 
 }  // namespace
 
-std::unique_ptr<Pilot> make_pilot(const Model* model, const Limits& limits) {
+std::unique_ptr<Pilot> make_pilot(const Model* model, const JudgeArm& arm, const Limits& limits) {
   if (model) return std::make_unique<Controller>(*model);
-  return std::make_unique<PlainTracker>(limits);
+  return std::make_unique<PlainTracker>(arm, limits);
 }
 
 Model model_for(const Model& configured, const Limits& limits) {
-  constexpr double kSame_m = 1e-6;
-  Joints q_rad;
-  q_rad << 0.3, -0.5, 0.7, 0.9, -1.1, 0.6, 0.2;
-  const bool same = configured.arm.joints == kJoints &&
-                    (forward(configured.arm, q_rad).tool_position - pose(q_rad).tool()).norm() < kSame_m;
-  if (!same) throw std::runtime_error("robot: the benchmark's scenes are for the arm of urdf/lwa3.urdf");
   if (configured.settings.rate_hz * kPeriod_s != 1.0)
     throw std::runtime_error(fmt::format("control.rate_hz: the benchmark's cycle is {} s", kPeriod_s));
   Model model = configured;
-  model.arm.limits = {limits.lower_rad, limits.upper_rad, limits.velocity_radps, limits.acceleration_radps2};
+  model.arm.limits = limits;
   return model;
 }
 

@@ -14,13 +14,13 @@ struct Seen {
   const Joints& q_rad;
   const Joints& qd_radps;
   const Moving& target;
-  const Eigen::Quaterniond* orientation;  ///< to be held by the tool, or null
+  const std::optional<Turning>& turning;
   const Sighting& obstacles;
 };
 
 struct Steering {
   bool tracking = false;  ///< false: still getting ready
-  Joints velocity_radps = Joints::Zero();
+  Joints velocity_radps;
   double cpu_s = 0.0;
   const char* message = "";
 };
@@ -32,10 +32,10 @@ class Pilot {
   virtual Steering cycle(const Seen& seen) = 0;
 };
 
-/// `model` steers, its step() called in process; it must outlive the pilot. Null: plain tracking.
-std::unique_ptr<Pilot> make_pilot(const Model* model, const Limits& limits);
+/// `model` steers, its step() called in process; null: plain tracking of the arm. Model and arm must outlive the pilot.
+std::unique_ptr<Pilot> make_pilot(const Model* model, const JudgeArm& arm, const Limits& limits);
 
-/// The controller's model with the limits of a family. Throws std::runtime_error unless it is the benchmark's arm.
+/// The controller's model with the limits of a family. Throws std::runtime_error unless its cycle is the benchmark's.
 Model model_for(const Model& configured, const Limits& limits);
 
 }  // namespace sidestep::campaign

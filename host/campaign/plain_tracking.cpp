@@ -9,7 +9,7 @@ namespace {
 constexpr double kPosition_per_s2 = 20.0, kVelocity_per_s = 8.94, kLargestSpeed_mps = 1.0;
 constexpr double kLambda = 0.08, kSigma = 0.08;
 
-Joints damped_inverse(const Eigen::Matrix<double, 3, kJoints>& jacobian, const Vector3& tool_mps) {
+Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
   Matrix3 gram = jacobian * jacobian.transpose();
   const double least = Eigen::SelfAdjointEigenSolver<Matrix3>(gram, Eigen::EigenvaluesOnly).eigenvalues()[0];
   const double sigma = std::sqrt(std::max(0.0, least));
@@ -26,9 +26,10 @@ double stoppable(double gap_rad, double acceleration_radps2) {
 
 }  // namespace
 
-Joints plain_tracking(const Limits& limits, const Moving& target, const Joints& q_rad, const Joints& qd_radps) {
-  const ArmPose now = pose(q_rad);
-  const auto jacobian = tool_jacobian(now);
+Joints plain_tracking(const JudgeArm& arm, const Limits& limits, const Moving& target, const Joints& q_rad,
+                      const Joints& qd_radps) {
+  const ArmPose now = arm.pose(q_rad);
+  const ToolJacobian jacobian = tool_jacobian(now);
   const Vector3 tool_mps = jacobian * qd_radps;
   const Vector3 force =
       kPosition_per_s2 * (target.position_m - now.tool()) + kVelocity_per_s * (target.velocity_mps - tool_mps);
@@ -37,7 +38,7 @@ Joints plain_tracking(const Limits& limits, const Moving& target, const Joints& 
 
   Joints velocity = damped_inverse(jacobian, wish_mps);
   velocity /= std::max(1.0, velocity.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff());
-  for (int i = 0; i < kJoints; ++i) {
+  for (int i = 0; i < velocity.size(); ++i) {
     const double a = limits.acceleration_radps2[i], step = a * kPeriod_s;
     const double up = stoppable(limits.upper_rad[i] - q_rad[i], a), down = stoppable(q_rad[i] - limits.lower_rad[i], a);
     velocity[i] = std::clamp(std::clamp(velocity[i], -down, up), qd_radps[i] - step, qd_radps[i] + step);
@@ -46,12 +47,12 @@ Joints plain_tracking(const Limits& limits, const Moving& target, const Joints& 
 }
 
 bool plain_tracking_hits(const Scene& scene) {
-  const Limits limits = scene.family->limits();
-  Joints q_rad = scene.start_rad, qd_radps = Joints::Zero();
+  const Limits limits = scene.arm->limits(*scene.family);
+  Joints q_rad = scene.start_rad, qd_radps = Joints::Zero(q_rad.size());
   for (int k = 0; k <= scene.periods; ++k) {
     const double t_s = k * kPeriod_s;
-    if (clearance_at(scene, pose(q_rad), t_s) < 0.0) return true;
-    qd_radps = plain_tracking(limits, target_at(scene, t_s), q_rad, qd_radps);
+    if (clearance_at(scene, scene.arm->pose(q_rad), t_s, 0.0) < 0.0) return true;
+    qd_radps = plain_tracking(*scene.arm, limits, target_at(scene, t_s), q_rad, qd_radps);
     q_rad += qd_radps * kPeriod_s;
   }
   return false;

@@ -37,7 +37,7 @@ std::string motion(const Scene& scene, bool straight, const std::function<Moving
 std::string target_yaml(const Scene& scene) {
   std::string text = motion(scene, !scene.family->chase, [&](double t_s) { return target_at(scene, t_s); });
   if (scene.family->hold_orientation) {
-    const Eigen::Quaterniond turn(pose(scene.start_rad).tool_rotation);
+    const Eigen::Quaterniond turn(scene.arm->pose(scene.start_rad).tool_rotation);
     text += ", quaternion: " + list(Eigen::Vector4d(turn.w(), turn.x(), turn.y(), turn.z()));
   }
   return '{' + text + '}';
@@ -55,7 +55,7 @@ std::string obstacles_yaml(const Scene& scene) {
 
 std::string plant_yaml(const Scene& scene) {
   if (!scene.family->real) return "{kind: ideal}";
-  const Limits limits = scene.family->limits();
+  const Limits limits = scene.arm->limits(*scene.family);
   return fmt::format(
       "{{kind: servo, lag_s: {}, latency_s: 0, velocity_limit_radps: {}, acceleration_limit_radps2: {}}}", kPlantLag_s,
       limits.velocity_radps[0], kPlantAcceleration_radps2);
@@ -63,25 +63,27 @@ std::string plant_yaml(const Scene& scene) {
 
 }  // namespace
 
-Scene scene_named(const std::string& name) {
+Scene scene_named(const std::string& name, const JudgeArm& arm) {
   const size_t colon = name.find(':');
   if (colon != std::string::npos) {
     uint64_t seed = 0;
     const char* end = name.data() + name.size();
     const auto [rest, error] = std::from_chars(name.data() + colon + 1, end, seed);
-    if (error == std::errc() && rest == end) return make_scene(family_named(name.substr(0, colon)), seed);
+    if (error == std::errc() && rest == end) return make_scene(family_named(name.substr(0, colon)), seed, arm);
   }
   throw std::runtime_error(fmt::format("--replay: must be family:seed, is '{}'", name));
 }
 
 std::string scenario_yaml(const Scene& scene) {
   const Family& family = *scene.family;
+  if (family.full_pose) throw std::runtime_error("--replay: the simulator's targets cannot turn as a witness does");
   std::string text = fmt::format("# Written by: build/campaign --replay {}:{}\n", family.name, scene.seed);
   if (family.real)
     text += "# In the benchmark the obstacle messages are noisy, late and incomplete; here they are exact.\n";
   text += fmt::format("title: \"Benchmark, {} {}\"\n", family.name, scene.seed);
-  text += "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}\n";
-  text += fmt::format("config: {}\n", family.dodge ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml");
+  const ArmSource arm = scene.arm->source(family);
+  text += fmt::format("robot: {{urdf: {}, base: {}, tip: {}}}\n", arm.urdf, arm.base, arm.tip);
+  text += fmt::format("config: {}\n", arm.config.empty() ? "none" : arm.config);
   text += fmt::format("duration_s: {:.2f}\nrate_hz: 100\n", scene.duration_s());
   text += fmt::format("start_rad: {}\nplant: {}\n", list(scene.start_rad), plant_yaml(scene));
   text += fmt::format("target: {}\nobstacles:\n{}", target_yaml(scene), obstacles_yaml(scene));

@@ -22,7 +22,7 @@ class Work {
       : tasks_(tasks), entrant_(entrant), stop_(stop), rows_(tasks.size()), progress_(tasks.size(), quiet) {
     for (const Task& task : tasks)
       if (entrant.model && models_.count(task.family) == 0)
-        models_.emplace(task.family, model_for(*entrant.model, task.family->limits()));
+        models_.emplace(task.family, model_for(*entrant.model, entrant.arm.limits(*task.family)));
   }
 
   /// Takes tasks until none is left.
@@ -50,9 +50,10 @@ class Work {
 
  private:
   Row trial(const Task& task) const {
-    const Scene scene = make_scene(*task.family, task.seed);
+    const Scene scene = make_scene(*task.family, task.seed, entrant_.arm);
     const Model* model = entrant_.model ? &models_.at(task.family) : nullptr;
-    return {task.family, entrant_.law, task.seed, run_trial(scene, *make_pilot(model, task.family->limits()))};
+    const std::unique_ptr<Pilot> pilot = make_pilot(model, entrant_.arm, entrant_.arm.limits(*task.family));
+    return {task.family, entrant_.law, task.seed, run_trial(scene, *pilot)};
   }
 
   const std::vector<Task>& tasks_;

@@ -4,6 +4,7 @@
 
 #include "firmware/control/cycle.h"
 #include "host/campaign/csv.h"
+#include "host/campaign/lwa3_arm.h"
 
 namespace sidestep::campaign {
 
@@ -16,10 +17,11 @@ struct Task {
 constexpr uint64_t kMostScenes = 1'000'000;
 uint64_t scene_seed(uint64_t run_seed, uint64_t k);
 
-/// Who steers: the configured controller under the name of its law, or plain tracking when there is none.
+/// Who steers: the configured controller under the name of its law, or plain tracking when there is none; and what.
 struct Entrant {
   std::string law;
   const Model* model;
+  const JudgeArm& arm = lwa3_arm();
 };
 
 /// Runs all tasks on `jobs` threads; the rows come in the order of the tasks and do not depend on the threads, CPU

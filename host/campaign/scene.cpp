@@ -16,21 +16,28 @@ Joints witness_rad(const Scene& scene, double t_s) {
 }
 
 Joints witness_radps(const Scene& scene, double t_s) {
-  if (t_s >= scene.witness_s || t_s <= 0.0) return Joints::Zero();
+  if (t_s >= scene.witness_s || t_s <= 0.0) return Joints::Zero(scene.goal_rad.size());
   const double u = t_s / scene.witness_s;
   return 6.0 * u * (1.0 - u) / scene.witness_s * (scene.goal_rad - scene.start_rad);
 }
 
 Moving target_at(const Scene& scene, double t_s) {
-  if (!scene.family->chase) return {pose(scene.goal_rad).tool(), Vector3::Zero()};
-  const ArmPose witness = pose(witness_rad(scene, t_s));
+  if (!scene.family->chase) return {scene.arm->pose(scene.goal_rad).tool(), Vector3::Zero()};
+  const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
   return {witness.tool(), tool_jacobian(witness) * witness_radps(scene, t_s)};
 }
 
-double clearance_at(const Scene& scene, const ArmPose& pose, double t_s) {
-  double least_m = std::numeric_limits<double>::infinity();
+std::optional<Turning> turning_at(const Scene& scene, double t_s) {
+  const Family& family = *scene.family;
+  if (!family.full_pose && !family.hold_orientation) return std::nullopt;
+  const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
+  return Turning{Eigen::Quaterniond(witness.tool_rotation), tool_radps(witness, witness_radps(scene, t_s))};
+}
+
+double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
+  double least_m = within_m;
   for (const SpherePath& sphere : scene.spheres)
-    least_m = std::min(least_m, clearance(pose, sphere.at(t_s).position_m, kSphereRadius_m));
+    least_m = scene.arm->clearance(pose, sphere.at(t_s).position_m, kSphereRadius_m, least_m);
   return least_m;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "host/campaign/family.h"
+#include "host/campaign/judge_arm.h"
 #include "host/campaign/sphere_path.h"
 
 namespace sidestep::campaign {
@@ -20,6 +22,7 @@ constexpr double kPlantAcceleration_radps2 = 1e6;
 struct Scene {
   const Family* family;
   uint64_t seed;
+  const JudgeArm* arm;
   int periods;
   Joints start_rad;
   Joints goal_rad;   ///< where the witness ends; in a dodge the start
@@ -40,8 +43,17 @@ Joints witness_radps(const Scene& scene, double t_s);
 /// Where the tool shall be. Frozen before t = 0.
 Moving target_at(const Scene& scene, double t_s);
 
-/// Least clearance of the arm to all spheres at time t.
-double clearance_at(const Scene& scene, const ArmPose& pose, double t_s);
+/// How the tool shall be turned, and turn.
+struct Turning {
+  Eigen::Quaterniond orientation;
+  Vector3 velocity_radps;
+};
+
+/// Absent where only the tool's position matters.
+std::optional<Turning> turning_at(const Scene& scene, double t_s);
+
+/// Least clearance of the arm to all spheres at time t; within_m when it is not below that.
+double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
 
 /// Dodge: the time while a sphere is so near to its crossing that the tool's deviation counts.
 constexpr double kPassReach_m = 0.35;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "host/campaign/dodge_maker.h"
 #include "host/campaign/plain_tracking.h"
@@ -13,32 +14,41 @@ namespace {
 
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 constexpr double kRest_s = 5.0, kLongest_s = 12.0;
-constexpr int kMostDraws = 20'000;  // of spheres, before another witness is drawn
+constexpr int kMostDraws = 20'000;  // of a posture; of spheres before another witness is drawn
 
-/// A random posture within a share of the joint limits, high enough above the floor.
-Joints draw_posture(Random& random, double share, double lowest_wrist_m) {
-  const Limits limits = benchmark_limits();
-  while (true) {
-    Joints q_rad;
-    for (int i = 0; i < kJoints; ++i) q_rad[i] = share * random.uniform(limits.lower_rad[i], limits.upper_rad[i]);
-    const ArmPose arm = pose(q_rad);
-    if (arm.tool().z() > 0.15 && arm.corners[3].z() > lowest_wrist_m) return q_rad;
+/// A random posture within a share of the joints' range, high enough above the floor.
+Joints draw_posture(Random& random, const JudgeArm& arm, double share, double lowest_wrist_m) {
+  const Limits range = arm.range();
+  Joints q_rad(range.lower_rad.size());
+  for (int draw = 0; draw < kMostDraws; ++draw) {
+    for (int i = 0; i < q_rad.size(); ++i) {
+      const double middle_rad = 0.5 * (range.lower_rad[i] + range.upper_rad[i]);
+      q_rad[i] = middle_rad + share * (random.uniform(range.lower_rad[i], range.upper_rad[i]) - middle_rad);
+    }
+    const ArmPose pose = arm.pose(q_rad);
+    if (pose.tool().z() > 0.15 && pose.wrist().z() > lowest_wrist_m && arm.keeps_clear_of_itself(pose)) return q_rad;
   }
+  throw std::runtime_error("the arm has no posture above its own foot for a scene");
 }
 
 /// Start, goal and duration; false when the motion takes too long.
 bool draw_witness(Random& random, Scene& scene) {
-  scene.start_rad = draw_posture(random, 0.7, kNoFloor);
-  scene.goal_rad = draw_posture(random, 0.8, 0.10);
+  scene.start_rad = draw_posture(random, *scene.arm, 0.7, kNoFloor);
+  scene.goal_rad = draw_posture(random, *scene.arm, 0.8, 0.10);
   const double widest_rad = (scene.goal_rad - scene.start_rad).cwiseAbs().maxCoeff();
-  scene.witness_s = 0.5 + 1.95 * widest_rad / 1.2;
+  const double speed_radps = std::min(1.2, scene.arm->limits(*scene.family).velocity_radps.minCoeff());
+  scene.witness_s = 0.5 + 1.95 * widest_rad / speed_radps;
   scene.periods = static_cast<int>(std::ceil((scene.witness_s + kRest_s) / kPeriod_s));
   return scene.witness_s + kRest_s <= kLongest_s;
 }
 
+/// At every period; none when the arm would come too near to itself.
 std::vector<ArmPose> witness_poses(const Scene& scene) {
   std::vector<ArmPose> poses;
-  for (int k = 0; k <= scene.periods; ++k) poses.push_back(pose(witness_rad(scene, k * kPeriod_s)));
+  for (int k = 0; k <= scene.periods; ++k) {
+    poses.push_back(scene.arm->pose(witness_rad(scene, k * kPeriod_s)));
+    if (!scene.arm->keeps_clear_of_itself(poses.back())) return {};
+  }
   return poses;
 }
 
@@ -57,36 +67,40 @@ SpherePath draw_sphere(Random& random, const Scene& scene) {
   return path;
 }
 
-bool belongs(const std::vector<ArmPose>& witness, const SpherePath& sphere) {
+bool belongs(const JudgeArm& arm, const std::vector<ArmPose>& witness, const SpherePath& sphere) {
   double least_m = std::numeric_limits<double>::infinity();
   for (size_t k = 0; k < witness.size(); ++k) {
     const Vector3 center_m = sphere.at(static_cast<double>(k) * kPeriod_s).position_m;
-    least_m = std::min(least_m, clearance(witness[k], center_m, kSphereRadius_m));
+    least_m = std::min(least_m, arm.believed_clearance(witness[k], center_m, kSphereRadius_m));
     if (least_m < kWitnessClearance_m) return false;
+    if (arm.clearance(witness[k], center_m, kSphereRadius_m, kWitnessClearance_m) < kWitnessClearance_m) return false;
   }
   return least_m <= kWitnessNear_m;
 }
 
 bool draw_spheres(Random& random, Scene& scene) {
   scene.spheres.clear();
-  const auto wanted = static_cast<size_t>(random.whole(1, scene.family->most_obstacles));
+  const int most = scene.family->most_obstacles;
+  const auto wanted = static_cast<size_t>(random.whole(std::min(1, most), most));
   const std::vector<ArmPose> witness = witness_poses(scene);
+  if (witness.empty()) return false;
   for (int draw = 0; draw < kMostDraws && scene.spheres.size() < wanted; ++draw) {
     SpherePath sphere = draw_sphere(random, scene);
-    if (belongs(witness, sphere)) scene.spheres.push_back(std::move(sphere));
+    if (belongs(*scene.arm, witness, sphere)) scene.spheres.push_back(std::move(sphere));
   }
   return scene.spheres.size() == wanted;
 }
 
 }  // namespace
 
-Scene make_scene(const Family& family, uint64_t seed) {
-  Scene scene{&family, seed, 0, {}, {}, 0.0, {}};
+Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
+  Scene scene{&family, seed, &arm, 0, {}, {}, 0.0, {}};
   Random random(family.stream, seed);
   bool kept = false;
   while (!kept)
-    kept = family.dodge ? make_dodge(random, scene, draw_posture(random, 0.7, kNoFloor))
-                        : draw_witness(random, scene) && draw_spheres(random, scene) && plain_tracking_hits(scene);
+    kept = family.dodge ? make_dodge(random, scene, draw_posture(random, arm, 0.7, kNoFloor))
+                        : draw_witness(random, scene) && draw_spheres(random, scene) &&
+                              (scene.spheres.empty() || plain_tracking_hits(scene));
   return scene;
 }
 

@@ -17,7 +17,7 @@ void Smoothness::add(const Joints& velocity_radps, bool near) {
   speed_radps_ = std::max(speed_radps_, velocity_radps.cwiseAbs().maxCoeff());
   acceleration_radps2_ = std::max(acceleration_radps2_, acceleration.cwiseAbs().maxCoeff());
   jerk_radps3_ = std::max(jerk_radps3_, jerk.cwiseAbs().maxCoeff());
-  for (int i = 0; i < kJoints; ++i) {
+  for (int i = 0; i < direction_.size(); ++i) {
     if (std::abs(acceleration[i]) < kNoticeable_radps2) continue;
     const double direction = std::copysign(1.0, acceleration[i]);
     if (near && direction_[i] * direction < 0.0) ++sign_changes_;
@@ -30,7 +30,7 @@ void Smoothness::add(const Joints& velocity_radps, bool near) {
 
 double Smoothness::chatter_per_s() const {
   if (near_periods_ == 0) return std::numeric_limits<double>::quiet_NaN();
-  return sign_changes_ / (kJoints * near_periods_ * kPeriod_s);
+  return sign_changes_ / (static_cast<double>(direction_.size()) * near_periods_ * kPeriod_s);
 }
 
 }  // namespace sidestep::campaign

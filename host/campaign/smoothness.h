@@ -8,7 +8,10 @@ namespace sidestep::campaign {
 class Smoothness {
  public:
   /// This velocity was commanded before the first.
-  explicit Smoothness(const Joints& velocity_radps) : velocity_radps_(velocity_radps) {}
+  explicit Smoothness(const Joints& velocity_radps)
+      : velocity_radps_(velocity_radps),
+        acceleration_(Joints::Zero(velocity_radps.size())),
+        direction_(Joints::Zero(velocity_radps.size())) {}
 
   /// The next command; `near` tells whether an obstacle is close enough for chatter to matter.
   void add(const Joints& velocity_radps, bool near);
@@ -22,8 +25,8 @@ class Smoothness {
 
  private:
   Joints velocity_radps_;
-  Joints acceleration_ = Joints::Zero();
-  Joints direction_ = Joints::Zero();  ///< sign of the last acceleration that was no rounding error
+  Joints acceleration_;
+  Joints direction_;  ///< sign of the last acceleration that was no rounding error
   double speed_radps_ = 0.0;
   double acceleration_radps2_ = 0.0;
   double jerk_radps3_ = 0.0;

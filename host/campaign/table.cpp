@@ -66,6 +66,12 @@ const Columns& reach_columns() {
   return columns;
 }
 
+Columns full_pose_columns() {
+  Columns columns = reach_columns();
+  columns.push_back({"turn", "RMS, deg", 1, average(&Outcome::turn_rms_rad, kDegree)});
+  return columns;
+}
+
 const Columns& dodge_columns() {
   static const Columns columns{
       {"contact", "%", 1, share(touched)},
@@ -148,9 +154,13 @@ std::string tables(const std::vector<Row>& rows, bool with_cpu) {
     if (with_cpu) columns.insert(columns.end(), cpu_columns().begin(), cpu_columns().end());
     return columns;
   };
-  std::vector<Sample> reaches, dodges;
-  for (Sample& sample : samples(rows)) (sample.front().family->dodge ? dodges : reaches).push_back(std::move(sample));
-  return table(reaches, all(reach_columns())) + table(dodges, all(dodge_columns()));
+  std::vector<Sample> reaches, full_poses, dodges;
+  for (Sample& sample : samples(rows)) {
+    const Family& family = *sample.front().family;
+    (family.dodge ? dodges : family.full_pose ? full_poses : reaches).push_back(std::move(sample));
+  }
+  return table(reaches, all(reach_columns())) + table(full_poses, all(full_pose_columns())) +
+         table(dodges, all(dodge_columns()));
 }
 
 std::string smoothness_table(const std::vector<Row>& rows) {

@@ -17,8 +17,8 @@ sim::PlantSpec plant_of(const Scene& scene) {
   if (!scene.family->real) return spec;
   spec.kind = sim::PlantSpec::Kind::kServo;
   spec.lag_s = kPlantLag_s;
-  spec.velocity_limit_radps = scene.family->limits().velocity_radps;
-  spec.acceleration_limit_radps2 = Joints::Constant(kPlantAcceleration_radps2);
+  spec.velocity_limit_radps = scene.arm->limits(*scene.family).velocity_radps;
+  spec.acceleration_limit_radps2 = Joints::Constant(scene.start_rad.size(), kPlantAcceleration_radps2);
   return spec;
 }
 
@@ -26,19 +26,15 @@ sim::PlantSpec plant_of(const Scene& scene) {
 class Loop {
  public:
   Loop(const Scene& scene, Pilot& pilot)
-      : scene_(scene),
-        pilot_(pilot),
-        plant_(plant_of(scene), scene.start_rad),
-        sensing_(scene),
-        orientation_(pose(scene.start_rad).tool_rotation) {}
+      : scene_(scene), pilot_(pilot), plant_(plant_of(scene), scene.start_rad), sensing_(scene) {}
 
   const sim::Plant& plant() const { return plant_; }
 
   Steering ask(double t_s) {
     const Joints q_rad = plant_.q_rad(), qd_radps = plant_.qd_radps();
     const Moving target = target_at(scene_, t_s);
-    return pilot_.cycle({now_us_, q_rad, qd_radps, target, scene_.family->hold_orientation ? &orientation_ : nullptr,
-                         sensing_.look(now_us_, t_s)});
+    const std::optional<Turning> turning = turning_at(scene_, t_s);
+    return pilot_.cycle({now_us_, q_rad, qd_radps, target, turning, sensing_.look(now_us_, t_s)});
   }
 
   void move(const Steering& steering) {
@@ -52,7 +48,6 @@ class Loop {
   Pilot& pilot_;
   sim::Plant plant_;
   Sensing sensing_;
-  Eigen::Quaterniond orientation_;
   int64_t now_us_ = 1'000'000;
 };
 

@@ -191,4 +191,16 @@ void Arm::place(const JointVector& q_rad) {
   base_from_tool_ = isometry(bodies_[tool_body_].base_from_body);
 }
 
+std::vector<JointAxis> Arm::axes() const {
+  std::vector<JointAxis> axes;
+  for (const Body& body : bodies_) {
+    if (body.joint < 0) continue;
+    const KDL::Frame& base_from_parent = bodies_[body.parent].base_from_body;
+    const KDL::Vector origin = base_from_parent * body.segment.getJoint().JointOrigin();
+    const KDL::Vector direction = base_from_parent.M * body.segment.getJoint().JointAxis();
+    axes.push_back({{origin.x(), origin.y(), origin.z()}, {direction.x(), direction.y(), direction.z()}});
+  }
+  return axes;
+}
+
 }  // namespace sidestep::sim

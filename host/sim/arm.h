@@ -18,6 +18,12 @@ struct ArmPart {
   Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
 };
 
+/// Where a joint turns, base frame.
+struct JointAxis {
+  Eigen::Vector3d origin_m;   ///< a point of the axis
+  Eigen::Vector3d direction;  ///< unit
+};
+
 /// The arm as its URDF describes it: forward kinematics and collision shapes of the links from base to tip and of all
 /// that is rigidly attached to them. Poses are in the frame of the base link.
 class Arm {
@@ -32,6 +38,9 @@ class Arm {
 
   const std::vector<ArmPart>& parts() const { return parts_; }
   const Eigen::Isometry3d& base_from_tool() const { return base_from_tool_; }
+
+  /// Of all joints of the chain, base first.
+  std::vector<JointAxis> axes() const;
 
  private:
   struct Body {

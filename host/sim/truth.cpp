@@ -22,16 +22,22 @@ double distance_to_axis_m(const ArmPart& part, const Eigen::Vector3d& point_m) {
   return (offset_m - along * half_m).norm();
 }
 
-// What the distance of two surfaces can be at least.
+// What the distance of two surfaces can be at least: a mesh is in its bounding box, all else in a sphere.
 double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
-  return (part.base_from_part.translation() - obstacle.motion.position_m).norm() - bounding_radius_m(part.solid) -
-         bounding_radius_m(obstacle.solid);
+  const Eigen::Vector3d offset_m = obstacle.motion.position_m - part.base_from_part.translation();
+  double bound_m = offset_m.norm() - bounding_radius_m(part.solid);
+  if (part.solid.shape == Shape::kMesh) {
+    const Eigen::Vector3d in_part_m = part.base_from_part.linear().transpose() * offset_m;
+    bound_m = (in_part_m.cwiseAbs() - 0.5 * part.solid.size_m).cwiseMax(0.0).norm();
+  }
+  return bound_m - bounding_radius_m(obstacle.solid);
 }
 
 }  // namespace
 
-Nearest Truth::nearest(const std::vector<Obstacle>& obstacles) const {
+Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, double within_m) const {
   Nearest best;
+  best.clearance_m = within_m;
   std::vector<std::pair<double, const ArmPart*>> candidates;  // most promising first
   for (size_t i = 0; i < obstacles.size(); ++i) {
     candidates.clear();

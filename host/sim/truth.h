@@ -23,15 +23,16 @@ class Truth {
  public:
   explicit Truth(Arm arm) : arm_(std::move(arm)) {}
 
+  const Arm& arm() const { return arm_; }
   int joints() const { return arm_.joints(); }
   void place(const JointVector& q_rad) { arm_.place(q_rad); }
 
   /// Base frame.
   Eigen::Vector3d tool_m() const { return arm_.base_from_tool().translation(); }
 
-  /// Over all links, also those that no joint moves. The work grows with the number of obstacles, most of which cost
-  /// only a comparison of bounding spheres.
-  Nearest nearest(const std::vector<Obstacle>& obstacles) const;
+  /// Over all links, also those that no joint moves; pairs that are not nearer than within_m do not count. The work
+  /// grows with the number of obstacles, most of which cost only a comparison of bounding volumes.
+  Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const;
 
   /// From one obstacle to the nearest link, as in nearest().
   double clearance_m(const Obstacle& obstacle) const { return nearest({obstacle}).clearance_m; }

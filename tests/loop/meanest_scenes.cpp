@@ -11,9 +11,10 @@ namespace {
 
 Outcome play(const char* family_name, uint64_t seed, bool foresees) {
   const Family& family = family_named(family_name);
-  Model model = model_for(load_config("firmware/config/lwa3.yaml", {}).model, family.limits());
+  const Limits limits = lwa3_arm().limits(family);
+  Model model = model_for(load_config("firmware/config/lwa3.yaml", {}).model, limits);
   model.settings.foresight.enabled = foresees;
-  const std::unique_ptr<Pilot> pilot = make_pilot(&model, family.limits());
+  const std::unique_ptr<Pilot> pilot = make_pilot(&model, lwa3_arm(), limits);
   return run_trial(make_scene(family, seed), *pilot);
 }
 

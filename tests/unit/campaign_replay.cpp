@@ -29,7 +29,7 @@ void the_simulator_reads_the_same_scene(void**) {
     check_near(target.motion.position_m, target_at(scene, 0.0).position_m, 0.0);
     check(target.tracks_orientation == scene.family->hold_orientation, "%s", name);
     if (target.tracks_orientation)
-      check_near(target.motion.orientation.toRotationMatrix(), pose(scene.start_rad).tool_rotation, 1e-9);
+      check_near(target.motion.orientation.toRotationMatrix(), lwa3_arm().pose(scene.start_rad).tool_rotation, 1e-9);
     check((scenario.plant.kind == sidestep::sim::PlantSpec::Kind::kServo) == scene.family->real, "%s", name);
   }
 }
@@ -37,7 +37,7 @@ void the_simulator_reads_the_same_scene(void**) {
 /// benchmark.yaml is the controller's configuration for these scenarios.
 void the_configuration_has_the_benchmarks_limits(void**) {
   const auto model = sidestep::load_config("host/campaign/benchmark.yaml", {}).model;
-  const Limits limits = benchmark_limits();
+  const Limits limits = lwa3_arm().range();
   check_near(model.arm.limits.lower_rad, limits.lower_rad, 0.0);
   check_near(model.arm.limits.upper_rad, limits.upper_rad, 0.0);
   check_near(model.arm.limits.velocity_radps, limits.velocity_radps, 0.0);
@@ -46,7 +46,7 @@ void the_configuration_has_the_benchmarks_limits(void**) {
 
 void dodges_have_the_limits_of_the_urdf(void**) {
   const auto model = sidestep::load_config("firmware/config/lwa3.yaml", {}).model;
-  const Limits limits = family_named("dodge@1").limits();
+  const Limits limits = lwa3_arm().limits(family_named("dodge@1"));
   check_near(model.arm.limits.lower_rad, limits.lower_rad, 0.0);
   check_near(model.arm.limits.upper_rad, limits.upper_rad, 0.0);
   check_near(model.arm.limits.velocity_radps, limits.velocity_radps, 0.0);

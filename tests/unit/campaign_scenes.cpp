@@ -34,8 +34,8 @@ void every_witness_is_clear_of_every_sphere_and_near_each(void**) {
       double least_m = 1e9;
       for (int k = 0; k <= scene.periods; ++k) {
         const double t_s = k * kPeriod_s;
-        const ArmPose arm = pose(witness_rad(scene, t_s));
-        least_m = std::min(least_m, clearance(arm, sphere.at(t_s).position_m, 0.05));
+        const ArmPose arm = lwa3_arm().pose(witness_rad(scene, t_s));
+        least_m = std::min(least_m, lwa3_arm().clearance(arm, sphere.at(t_s).position_m, 0.05));
       }
       check(least_m >= 0.05 && least_m <= 0.25, "%s: %g m", name(scene).c_str(), least_m);
     }
@@ -44,7 +44,7 @@ void every_witness_is_clear_of_every_sphere_and_near_each(void**) {
 
 void every_witness_keeps_the_limits(void**) {
   for_each_scene(false, [](const Scene& scene) {
-    const Limits limits = benchmark_limits();
+    const Limits limits = lwa3_arm().range();
     for (const Joints& q_rad : {scene.start_rad, scene.goal_rad})
       check((0.8 * limits.upper_rad - q_rad.cwiseAbs()).minCoeff() >= 0.0, "%s", name(scene).c_str());
     for (double t_s = 0.0; t_s < scene.duration_s(); t_s += 0.01) {
@@ -60,17 +60,18 @@ void every_witness_keeps_the_limits(void**) {
 
 void start_and_goal_are_above_the_floor(void**) {
   for_each_scene(false, [](const Scene& scene) {
-    check(pose(scene.start_rad).tool().z() > 0.15, "%s", name(scene).c_str());
-    check(pose(scene.goal_rad).tool().z() > 0.15, "%s", name(scene).c_str());
-    check(pose(scene.goal_rad).corners[3].z() > 0.10, "%s", name(scene).c_str());
+    check(lwa3_arm().pose(scene.start_rad).tool().z() > 0.15, "%s", name(scene).c_str());
+    check(lwa3_arm().pose(scene.goal_rad).tool().z() > 0.15, "%s", name(scene).c_str());
+    check(lwa3_arm().pose(scene.goal_rad).corners[3].z() > 0.10, "%s", name(scene).c_str());
   });
 }
 
 void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
   for_each_scene(false, [](const Scene& scene) {
     const Family& family = *scene.family;
-    check(!scene.spheres.empty() && scene.spheres.size() <= static_cast<size_t>(family.most_obstacles), "%s",
-          name(scene).c_str());
+    check(scene.spheres.empty() == (family.most_obstacles == 0) &&
+              scene.spheres.size() <= static_cast<size_t>(family.most_obstacles),
+          "%s", name(scene).c_str());
     for (const SpherePath& sphere : scene.spheres) {
       check(sphere.straight() != family.erratic, "%s", name(scene).c_str());
       for (double t_s = 0.0; t_s <= scene.duration_s(); t_s += 0.05)
@@ -81,7 +82,9 @@ void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
 }
 
 void plain_tracking_hits_in_every_scene(void**) {
-  for_each_scene(false, [](const Scene& scene) { check(plain_tracking_hits(scene), "%s", name(scene).c_str()); });
+  for_each_scene(false, [](const Scene& scene) {
+    check(plain_tracking_hits(scene) != scene.spheres.empty(), "%s", name(scene).c_str());
+  });
 }
 
 void the_target_of_a_chase_is_the_witnesss_tool(void**) {
@@ -89,11 +92,23 @@ void the_target_of_a_chase_is_the_witnesss_tool(void**) {
     const Scene scene = make_scene(family_named("chase"), seed);
     for (double t_s = 0.02; t_s < scene.duration_s() - 0.02; t_s += 0.05) {
       const Moving target = target_at(scene, t_s);
-      check_near(target.position_m, pose(witness_rad(scene, t_s)).tool(), 0.0);
+      check_near(target.position_m, lwa3_arm().pose(witness_rad(scene, t_s)).tool(), 0.0);
       const Vector3 slope_mps =
           (target_at(scene, t_s + 1e-5).position_m - target_at(scene, t_s - 1e-5).position_m) / 2e-5;
       check_near(target.velocity_mps, slope_mps, 1e-4);
     }
+  }
+}
+
+void the_target_of_a_full_pose_turns_as_the_witness(void**) {
+  const Scene scene = make_scene(family_named("chase6d"), 3), moving = make_scene(family_named("chase"), 3);
+  check_near(scene.goal_rad, moving.goal_rad, 0.0);
+  check(!turning_at(moving, 1.0), "a chase has no orientation");
+  for (double t_s = 0.02; t_s < scene.duration_s() - 0.02; t_s += 0.05) {
+    const auto turning = turning_at(scene, t_s), later = turning_at(scene, t_s + 1e-5);
+    check_near(turning->orientation.toRotationMatrix(), lwa3_arm().pose(witness_rad(scene, t_s)).tool_rotation, 1e-12);
+    const Eigen::AngleAxisd turned(later->orientation * turning->orientation.conjugate());
+    check_near(turning->velocity_radps, Vector3(turned.angle() / 1e-5 * turned.axis()), 1e-3);
   }
 }
 
@@ -126,14 +141,14 @@ bool crosses_a_moving_link(const ArmPose& arm, const Vector3& center_m) {
 
 void dodged_spheres_go_through_the_arm_past_the_column(void**) {
   for_each_scene(true, [](const Scene& scene) {
-    const ArmPose arm = pose(scene.start_rad);
+    const ArmPose arm = lwa3_arm().pose(scene.start_rad);
     check(scene.spheres.size() == static_cast<size_t>(scene.family->most_obstacles), "%s", name(scene).c_str());
     for (const SpherePath& sphere : scene.spheres) {
       const Moving start = sphere.at(0.0), crossing = sphere.at(scene.crossing_s);
       check(crosses_a_moving_link(arm, crossing.position_m), "%s", name(scene).c_str());
       check_near((crossing.position_m - start.position_m).norm(), 0.9, 1e-9);
       check_near(start.velocity_mps.norm(), scene.family->speed_mps, 1e-12);
-      check(clearance(arm, start.position_m, 0.05) >= 0.05, "%s", name(scene).c_str());
+      check(lwa3_arm().clearance(arm, start.position_m, 0.05) >= 0.05, "%s", name(scene).c_str());
       for (double s_m = 0.0; s_m < 2.0; s_m += 0.01) {
         const Vector3 center_m = start.position_m + s_m * start.velocity_mps.normalized();
         const Vector3 column_m(0, 0, std::clamp(center_m.z(), 0.0, 0.3));
@@ -163,6 +178,7 @@ int main() {
       cmocka_unit_test(spheres_are_as_many_and_as_fast_as_the_family_says),
       cmocka_unit_test(plain_tracking_hits_in_every_scene),
       cmocka_unit_test(the_target_of_a_chase_is_the_witnesss_tool),
+      cmocka_unit_test(the_target_of_a_full_pose_turns_as_the_witness),
       cmocka_unit_test(a_seed_is_a_scene),
       cmocka_unit_test(real_has_the_scenes_of_moving),
       cmocka_unit_test(dodged_spheres_go_through_the_arm_past_the_column),

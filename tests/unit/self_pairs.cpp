@@ -55,6 +55,14 @@ void the_pairs_are_the_same_every_time(void**) {
   }
 }
 
+/// As wide a clearance as no posture has would be asked for in vain, in every cycle.
+void no_pair_is_held_farther_apart_than_it_is_built(void**) {
+  const size_t all = find_self_pairs(lwa3()).size() + find_overlaps(lwa3()).size();
+  check(find_self_pairs(lwa3(), 0.02).size() == 3, "%zu at 2 cm", find_self_pairs(lwa3(), 0.02).size());
+  check(find_self_pairs(lwa3(), 2.0).empty(), "%zu at 2 m", find_self_pairs(lwa3(), 2.0).size());
+  check(find_overlaps(lwa3(), 2.0).size() == all, "%zu at 2 m", find_overlaps(lwa3(), 2.0).size());
+}
+
 /// The wish that folds the arm as fast as it can onto itself where it is nearest.
 JointVector folding_wish(const Arm& arm, const Posture& posture, const Pairs& pairs, double& least_m) {
   JointVector wish_radps = JointVector::Zero(arm.joints);
@@ -109,6 +117,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_lwa3_has_three_pairs_that_can_meet),
       cmocka_unit_test(the_pairs_are_the_same_every_time),
+      cmocka_unit_test(no_pair_is_held_farther_apart_than_it_is_built),
       cmocka_unit_test(an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,4 +1,4 @@
-#include "host/campaign/judge_arm.h"
+#include "host/campaign/lwa3_arm.h"
 
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
@@ -7,9 +7,13 @@
 #include "tests/support/random.h"
 
 using namespace sidestep::campaign;
+using sidestep::Matrix3;
+using sidestep::Vector3;
 using sidestep::test::Random;
 
 namespace {
+
+constexpr int kJoints = 7;
 
 Joints random_joints(Random& random) {
   return random.joints(kJoints, -M_PI, M_PI);
@@ -27,10 +31,10 @@ Eigen::Matrix4d craig(double alpha_rad, double d_m, double q_rad) {
 }
 
 void home_is_the_papers(void**) {
-  Joints q_rad = Joints::Zero();
+  Joints q_rad = Joints::Zero(kJoints);
   q_rad[1] = M_PI / 2;
   q_rad[3] = -M_PI / 2;
-  const ArmPose home = pose(q_rad);
+  const ArmPose home = lwa3_arm().pose(q_rad);
   check_near(home.tool(), Vector3(-0.328, 0, 0.9137), 1e-12);
   check_near(home.tool_rotation, Matrix3::Identity(), 1e-12);
 }
@@ -42,7 +46,7 @@ void frames_are_those_of_the_dh_table(void**) {
   Random random(1);
   for (int trial = 0; trial < 500; ++trial) {
     const Joints q_rad = random_joints(random);
-    const ArmPose arm = pose(q_rad);
+    const ArmPose arm = lwa3_arm().pose(q_rad);
     Eigen::Matrix4d t = Eigen::Matrix4d::Identity();
     for (int i = 0; i < kJoints; ++i) {
       t = t * craig(alpha_rad[i], d_m[i], q_rad[i]);
@@ -61,8 +65,8 @@ void jacobian_is_the_slope_of_the_tool(void**) {
   for (int trial = 0; trial < 200; ++trial) {
     const Joints q_rad = random_joints(random);
     const Joints step_rad = 1e-6 * random_joints(random);
-    const Vector3 moved_m = pose(q_rad + step_rad).tool() - pose(q_rad - step_rad).tool();
-    check_near(tool_jacobian(pose(q_rad)) * (2.0 * step_rad), moved_m, 1e-13);
+    const Vector3 moved_m = lwa3_arm().pose(q_rad + step_rad).tool() - lwa3_arm().pose(q_rad - step_rad).tool();
+    check_near(tool_jacobian(lwa3_arm().pose(q_rad)) * (2.0 * step_rad), moved_m, 1e-13);
   }
 }
 
@@ -104,10 +108,10 @@ void clearance_is_that_of_fcl(void**) {
   Random random(3);
   int apart = 0, overlapping = 0;
   for (int trial = 0; trial < 5000; ++trial) {
-    const ArmPose arm = pose(random_joints(random));
+    const ArmPose arm = lwa3_arm().pose(random_joints(random));
     const Vector3 center_m = random.inside(-0.4, 0.4) + Vector3(0, 0, 0.4);
     const double radius_m = random.uniform(0.01, 0.3);
-    const double clearance_m = clearance(arm, center_m, radius_m);
+    const double clearance_m = lwa3_arm().clearance(arm, center_m, radius_m);
     const Objects all = objects(arm, center_m, radius_m);
     check(fcl_touches(all) == (clearance_m < 0.0), "trial %d: %g", trial, clearance_m);
     if (clearance_m > 0.0) check_near_because(clearance_m, fcl_clearance(all), 1e-6, "trial %d", trial);
@@ -120,9 +124,9 @@ void clearance_is_that_of_fcl(void**) {
 void depth_grows_with_the_radius(void**) {
   Random random(4);
   for (int trial = 0; trial < 1000; ++trial) {
-    const ArmPose arm = pose(random_joints(random));
+    const ArmPose arm = lwa3_arm().pose(random_joints(random));
     const Vector3 center_m = random.inside(-0.5, 0.5);
-    check_near(clearance(arm, center_m, 0.3), clearance(arm, center_m, 0.05) - 0.25, 1e-12);
+    check_near(lwa3_arm().clearance(arm, center_m, 0.3), lwa3_arm().clearance(arm, center_m, 0.05) - 0.25, 1e-12);
   }
 }
 

@@ -1,0 +1,85 @@
+#include "host/campaign/lwa3_arm.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "host/campaign/family.h"
+
+namespace sidestep::campaign {
+namespace {
+
+constexpr size_t kJoints = 7;
+constexpr std::array<double, kJoints> kAlphaSign{0, 1, -1, 1, -1, 1, -1};  // of a quarter turn
+constexpr std::array<double, kJoints> kOffset_m{0.3, 0, 0.328, 0, 0.2765, 0, 0};
+constexpr double kTool_m = 0.3372;
+
+double distance_to_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
+  const Vector3 along = end - start;
+  const double share = std::clamp((p - start).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - start - share * along).norm();
+}
+
+Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, double velocity_radps) {
+  Limits limits;
+  limits.upper_rad.resize(kJoints);
+  limits.upper_rad << odd_rad, rad_2, odd_rad, rad_4, odd_rad, rad_6, odd_rad;
+  limits.lower_rad = -limits.upper_rad;
+  limits.velocity_radps = Joints::Constant(kJoints, velocity_radps);
+  limits.acceleration_radps2 = Joints::Constant(kJoints, 10.0);
+  return limits;
+}
+
+}  // namespace
+
+ArmPose Lwa3Arm::pose(const Joints& q_rad) const {
+  ArmPose pose;
+  Matrix3 rotation = Matrix3::Identity();
+  Vector3 origin = Vector3::Zero();
+  for (size_t i = 0; i < kJoints; ++i) {
+    // Craig: turn by alpha about x, move by d along the new z, turn by q about it.
+    if (kAlphaSign[i] != 0.0) {
+      const Vector3 y = rotation.col(1);
+      rotation.col(1) = kAlphaSign[i] * rotation.col(2);
+      rotation.col(2) = -kAlphaSign[i] * y;
+    }
+    origin += kOffset_m[i] * rotation.col(2);
+    const double c = std::cos(q_rad[static_cast<int>(i)]), s = std::sin(q_rad[static_cast<int>(i)]);
+    const Vector3 x = rotation.col(0), y = rotation.col(1);
+    rotation.col(0) = c * x + s * y;
+    rotation.col(1) = c * y - s * x;
+    pose.axes.push_back(rotation.col(2));
+    pose.origins.push_back(origin);
+  }
+  pose.corners = {Vector3::Zero(), pose.origins[0], pose.origins[2], pose.origins[4],
+                  origin + kTool_m * rotation.col(2)};
+  pose.tool_rotation = rotation;
+  return pose;
+}
+
+double Lwa3Arm::clearance(const ArmPose& pose, const Vector3& center_m, double radius_m, double within_m) const {
+  double least_m = distance_to_segment(pose.corners[0], pose.corners[1], center_m);
+  for (size_t i = 1; i < 4; ++i)
+    least_m = std::min(least_m, distance_to_segment(pose.corners[i], pose.corners[i + 1], center_m));
+  return std::min(within_m, least_m - kLinkRadius_m - radius_m);
+}
+
+Limits Lwa3Arm::range() const {
+  return symmetric(2.9, 1.9, 2.1, 2.0, 1.2);
+}
+
+Limits Lwa3Arm::limits(const Family& family) const {
+  return family.dodge ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : range();
+}
+
+ArmSource Lwa3Arm::source(const Family& family) const {
+  return {"urdf/lwa3.urdf", "base_link", "tool",
+          family.dodge ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml"};
+}
+
+const JudgeArm& lwa3_arm() {
+  static const Lwa3Arm arm;
+  return arm;
+}
+
+}  // namespace sidestep::campaign

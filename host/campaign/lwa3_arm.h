@@ -1,0 +1,25 @@
+#pragma once
+
+#include "host/campaign/judge_arm.h"
+
+namespace sidestep::campaign {
+
+/// The benchmark's arm: the LWA3 from its modified (Craig) D-H table, seven joints, four capsules of one radius between
+/// five corners (foot, shoulder, elbow, wrist, tool). Paper Table 1 with the lengths of paper-notes.md, "The arm".
+class Lwa3Arm : public JudgeArm {
+ public:
+  ArmPose pose(const Joints& q_rad) const override;
+  double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
+                   double within_m = sim::kNothingNear) const override;
+  Limits limits(const Family& family) const override;
+  Limits range() const override;
+  ArmSource source(const Family& family) const override;
+  int looks_per_period() const override { return 1; }
+};
+
+constexpr double kLinkRadius_m = 0.05;
+
+/// The only one there need be.
+const JudgeArm& lwa3_arm();
+
+}  // namespace sidestep::campaign

@@ -1,0 +1,84 @@
+#include "host/campaign/urdf_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/model/kinematics.h"
+
+namespace sidestep::campaign {
+namespace {
+
+constexpr double kCoincident_m = 1e-3;
+
+/// A joint that can turn farther than once around is used for one turn, around the middle of its range.
+void cut_to_one_turn(double& lower_rad, double& upper_rad) {
+  if (upper_rad - lower_rad <= 2.0 * M_PI) return;
+  const double middle_rad = std::isfinite(upper_rad - lower_rad) ? 0.5 * (lower_rad + upper_rad) : 0.0;
+  lower_rad = middle_rad - M_PI;
+  upper_rad = middle_rad + M_PI;
+}
+
+}  // namespace
+
+UrdfArm::UrdfArm(const Config& config)
+    : source_{config.robot.urdf, config.robot.base, config.robot.tip, config.file},
+      truth_(sim::Arm(config.robot.urdf, config.robot.base, config.robot.tip)),
+      model_(config.model) {}
+
+ArmPose UrdfArm::pose(const Joints& q_rad) const {
+  const auto truth = std::make_shared<sim::Truth>(truth_);  // shares the meshes
+  truth->place(q_rad);
+  ArmPose pose;
+  pose.tool_rotation = truth->arm().base_from_tool().linear();
+  pose.corners.emplace_back(Vector3::Zero());
+  for (const sim::JointAxis& joint : truth->arm().axes()) {
+    pose.axes.push_back(joint.direction);
+    pose.origins.push_back(joint.origin_m);
+    if ((joint.origin_m - pose.corners.back()).norm() > kCoincident_m) pose.corners.push_back(joint.origin_m);
+  }
+  pose.corners.push_back(truth->tool_m());
+  pose.truth = truth;
+  const Posture posture = forward(model_.arm, q_rad);
+  for (const LinkShape& shape : model_.arm.shapes) pose.capsules.push_back(placed(posture, shape));
+  return pose;
+}
+
+double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double radius_m, double within_m) const {
+  sim::Obstacle sphere;
+  sphere.solid.size_m.x() = radius_m;
+  sphere.motion.position_m = center_m;
+  return pose.truth->nearest({sphere}, within_m).clearance_m;
+}
+
+double UrdfArm::believed_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
+  double least_m = sim::kNothingNear;
+  for (const Capsule& capsule : pose.capsules)
+    least_m = std::min(least_m, (nearest_on_segment(capsule.start, capsule.end, center_m) - center_m).norm() -
+                                    capsule.radius_m - radius_m);
+  return least_m;
+}
+
+bool UrdfArm::keeps_clear_of_itself(const ArmPose& pose) const {
+  return std::all_of(model_.self_pairs.begin(), model_.self_pairs.end(), [&](const auto& pair) {
+    const Capsule &a = pose.capsules[static_cast<size_t>(pair.first)],
+                  &b = pose.capsules[static_cast<size_t>(pair.second)];
+    const NearestPoints nearest = nearest_on_axes(a, b);
+    return (nearest.a - nearest.b).norm() >= a.radius_m + b.radius_m + model_.settings.shield.self_clearance_m;
+  });
+}
+
+Limits UrdfArm::limits(const Family&) const {
+  return model_.arm.limits;
+}
+
+ArmSource UrdfArm::source(const Family&) const {
+  return source_;
+}
+
+Limits UrdfArm::range() const {
+  Limits range = model_.arm.limits;
+  for (int i = 0; i < model_.arm.joints; ++i) cut_to_one_turn(range.lower_rad[i], range.upper_rad[i]);
+  return range;
+}
+
+}  // namespace sidestep::campaign

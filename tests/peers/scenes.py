@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Witnessed scenes (build/campaign) for arms of example-robot-data: no contact in any, by the meshes of their URDF."""
+import argparse
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from kinematics import ROBOTS, ROOT
+
+ARMS = {
+    "panda": (ROBOTS / "panda_description/urdf/panda.urdf", "panda_link0", "panda_hand_tcp"),
+    "xarm7": (ROBOTS / "xarm_description/urdf/xarm7.urdf", "link_base", "link_eef"),
+}
+
+
+def contacts(arm, arguments):
+    """Plays the scenes of an arm, which prints their table; the names of those in which it touched something."""
+    urdf, base, tip = ARMS[arm]
+    with tempfile.TemporaryDirectory() as folder:
+        rows = Path(folder) / "rows.csv"
+        subprocess.run(["nice", ROOT / "build/campaign", "--urdf", urdf, "--base", base, "--tip", tip, "--csv", rows,
+                        "--family", arguments.family, "--count", str(arguments.count), "--seed", str(arguments.seed),
+                        "--quiet"], check=True)
+        played = list(csv.DictReader(rows.open()))
+    if len(played) != arguments.count:
+        sys.exit(f"{arm}: {len(played)} scenes played")
+    return [f"{row['family']}:{row['seed']}" for row in played if float(row["clearance_m"]) < 0.0]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=100, help="scenes for each arm (default %(default)s)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--family", default="chase", help="default %(default)s: the target moves, too")
+    arguments = parser.parse_args()
+    failed = 0
+    for arm in ARMS:
+        touched = contacts(arm, arguments)
+        failed += bool(touched)
+        print(f"{'FAIL' if touched else 'ok':4}  {arm}: contact in {len(touched)} of {arguments.count} scenes",
+              *touched, flush=True)
+    print(f"{len(ARMS) - failed} passed, {failed} failed")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    os.chdir(ROOT)
+    main()
