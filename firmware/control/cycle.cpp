@@ -154,6 +154,7 @@ void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
   if (!guide || mode != Mode::kTrack) return;
   report.outlook = guide->outlook;
   report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
+  if (guide->knots > 0) report.guide = guide;
 }
 
 void report_clearance(const Clearance& clearance, const ObstacleView& obstacles, Report& report) {

@@ -70,6 +70,7 @@ struct Report {
   double shield_correction_radps = 0.0;
   Outlook outlook = Outlook::kDirect;
   double guide_horizon_s = 0.0;  ///< until the guide's end; 0 without one
+  const Guide* guide = nullptr;  ///< followed in this cycle, of the inputs
   const char* message = "";
 };
 

@@ -1,11 +1,15 @@
 #include "firmware/io/encoder.h"
 
+#include <algorithm>
 #include <array>
 #include <drake/lcmt_iiwa_command.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/loop_timing_t.hpp>
+#include <type_traits>
 #include <vector>
+
+#include "firmware/model/kinematics.h"
 
 namespace sidestep {
 namespace {
@@ -19,6 +23,18 @@ void copy(const Vector3& from, double* to) {
 
 void copy(const JointVector& from, std::vector<double>& to) {
   to.assign(from.data(), from.data() + from.size());
+}
+
+/// Where the tool will be along the guide, at even times.
+void say_way(const Arm& arm, const Report& report, controller_status_t& message) {
+  constexpr int kPoints = std::extent_v<decltype(message.guide_tool)>;
+  std::fill_n(&message.guide_tool[0][0], 3 * kPoints, 0.0);
+  if (!report.guide) return;
+  for (int i = 0; i < kPoints; ++i) {
+    const double ahead_s = report.guide_horizon_s * i / (kPoints - 1);
+    const double at_s = report.guide->end_s() - report.guide_horizon_s + ahead_s;
+    copy(forward(arm, point_of(*report.guide, at_s).position_rad).tool_position, message.guide_tool[i]);
+  }
 }
 
 durations_t summary(const Histogram& histogram) {
@@ -48,7 +64,7 @@ struct Encoder::Messages {
   }
 };
 
-Encoder::Encoder(const Arm& arm, Dialect dialect) : messages_(std::make_unique<Messages>()) {
+Encoder::Encoder(const Arm& arm, Dialect dialect) : arm_(arm), messages_(std::make_unique<Messages>()) {
   for (const LinkShape& shape : arm.shapes) messages_->shape_links.push_back(shape.link.substr(0, kLongestText));
   messages_->dialect = dialect;
   messages_->command.num_joints = messages_->iiwa_command.num_joints = arm.joints;
@@ -103,6 +119,7 @@ Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   message.message = report.message;
   message.foresight = static_cast<int8_t>(report.outlook);
   message.guide_horizon = report.guide_horizon_s;
+  say_way(arm_, report, message);
   if (*record.rejected_reason) message.message.append("; rejected: ").append(record.rejected_reason);
   return messages_->packet(message);
 }

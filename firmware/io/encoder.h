@@ -29,6 +29,7 @@ struct Packet {
 /// Values to wire formats, without allocating. A packet stays valid until the next one is made.
 class Encoder {
  public:
+  /// The arm has to live as long.
   explicit Encoder(const Arm& arm, Dialect dialect = Dialect::kSidestep);
   ~Encoder();
 
@@ -38,6 +39,7 @@ class Encoder {
 
  private:
   struct Messages;
+  const Arm& arm_;
   std::unique_ptr<Messages> messages_;
 };
 

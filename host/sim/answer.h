@@ -25,6 +25,8 @@ struct Status {
   int64_t skipped_cycles = 0;
   int64_t rejected_messages = 0;
   std::string message;
+  int foresight = 0;  ///< 0 direct, 1 guided, 2 waiting
+  double guide_horizon_s = 0.0;
 };
 
 /// One message of the controller.

@@ -71,7 +71,7 @@ bool has_size_of_command(const uint8_t* bytes, int64_t size) {
 }
 
 bool has_size_of_status(const uint8_t* bytes, int64_t size) {
-  constexpr int64_t kLinkAt = 101, kBetweenTexts = 56, kAfterTexts = 9;  // the fixed fields around the two texts
+  constexpr int64_t kLinkAt = 101, kBetweenTexts = 56, kAfterTexts = 201;  // the fixed fields around the two texts
   if (size < kLinkAt + 4) return false;
   const int64_t link = int32_at(bytes, kLinkAt);
   const int64_t message_at = kLinkAt + 4 + link + kBetweenTexts;
@@ -94,8 +94,15 @@ std::optional<Status> decode_status(const uint8_t* bytes, int size) {
   if (message.mode < controller_status_t::WAIT || message.mode > controller_status_t::FAULT) return {};
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   std::replace_if(message.message.begin(), message.message.end(), is_control, ' ');
-  return Status{static_cast<Mode>(message.mode), message.cycle_time,        message.beta,   message.damping,
-                message.skipped_cycles,          message.rejected_messages, message.message};
+  return Status{static_cast<Mode>(message.mode),
+                message.cycle_time,
+                message.beta,
+                message.damping,
+                message.skipped_cycles,
+                message.rejected_messages,
+                message.message,
+                message.foresight,
+                message.guide_horizon};
 }
 
 }  // namespace

@@ -28,6 +28,12 @@ const char* name_of(Mode mode) {
   return "?";
 }
 
+/// Nothing while the law alone will do.
+std::string outlook_of(const Status& status) {
+  if (status.foresight == 1) return fmt::format(", guided {:.1f} s", status.guide_horizon_s);
+  return status.foresight == 2 ? ", no way known" : "";
+}
+
 std::string bar(double done) {
   constexpr int kWidth = 20;
   const int filled = static_cast<int>(kWidth * std::clamp(done, 0.0, 1.0));
@@ -74,9 +80,9 @@ void Live::waiting(const std::string& for_what) {
 
 void Live::running(const Row& row, double duration_s) {
   if (!due()) return;
-  show(fmt::format("{} {:.2f}/{:.2f} s  target {:.3f} m  clearance {:.3f} m  {}  cycle {:.0f} us",
+  show(fmt::format("{} {:.2f}/{:.2f} s  target {:.3f} m  clearance {:.3f} m  {}{}  cycle {:.0f} us",
                    bar(row.t_s / duration_s), row.t_s, duration_s, row.target_distance_m, row.nearest.clearance_m,
-                   name_of(row.status.mode), row.status.cycle_time_s * 1e6));
+                   name_of(row.status.mode), outlook_of(row.status), row.status.cycle_time_s * 1e6));
 }
 
 }  // namespace sidestep::sim

@@ -40,7 +40,7 @@ std::string header(int joints, int obstacles) {
   for (int i = 1; i <= obstacles; ++i) {
     names += fmt::format(",o{0}_x_m,o{0}_y_m,o{0}_z_m,o{0}_axis_distance_m,o{0}_clearance_m", i);
   }
-  return names + ",mode,cycle_time_s,beta,damping\n";
+  return names + ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s\n";
 }
 
 }  // namespace
@@ -68,6 +68,7 @@ void CsvFile::write(const Row& row, const Truth& truth) {
   }
   line.add(static_cast<double>(row.status.mode)).add(row.status.cycle_time_s);
   line.add(row.status.beta).add(row.status.damping);
+  line.add(row.status.foresight).add(row.status.guide_horizon_s);
   out_ << line.end();
 }
 

@@ -134,8 +134,18 @@ def plot_top(axes, run):
     axes.set_title("From above" + (" (each obstacle when it is nearest)" if obstacle_count(columns) else ""))
 
 
+def mark_foresight(axes, run):
+    """Grey where the arm follows a guide, darker where no way is known."""
+    t, outlook = run.columns["t_s"], run.columns["foresight"]
+    for value, label, alpha in ((1, "guided by foresight", 0.12), (2, "no way known", 0.3)):
+        if (outlook == value).any():
+            axes.fill_between(t, 0, 1, where=outlook == value, transform=axes.get_xaxis_transform(), color=BLACK,
+                              alpha=alpha, linewidth=0, label=label)
+
+
 def plot_target_distance(axes, runs):
     for run in runs:
+        mark_foresight(axes, run)
         distance_m = run.columns["target_distance_m"]
         axes.plot(run.columns["t_s"], distance_m, **LAW_LINES[run.law],
                   label=f"{LAWS[run.law]}: {length(distance_m[-1])} at the end")

@@ -19,9 +19,16 @@ def bar(value, full, width=30):
     return "#" * round(share * width) + "." * (width - round(share * width))
 
 
+def outlook(status):
+    """In words what foresight expects; nothing while the law alone will do."""
+    if status.foresight == status.GUIDED:
+        return f"guided for {status.guide_horizon:.1f} s"
+    return "no way known" if status.foresight == status.WAITING else ""
+
+
 def brief(status):
     return (f"{bus.MODES.get(status.mode, status.mode):5}  target {status.target_distance:6.3f} m  clearance "
-            f"{status.clearance:6.3f} m  cycle {status.cycle_time * 1e6:5.0f} us  {status.message}")
+            f"{status.clearance:6.3f} m  cycle {status.cycle_time * 1e6:5.0f} us  {outlook(status)}  {status.message}")
 
 
 def lines(heard):
@@ -30,7 +37,7 @@ def lines(heard):
         return ["waiting for CONTROLLER_STATUS"]
     limits = ", ".join(name for name, bit in LIMITING.items() if status.limiting & bit) or "nothing"
     obstacles = heard["OBSTACLES"].num_obstacles if "OBSTACLES" in heard else "none heard"
-    shown = [f"{bus.MODES.get(status.mode, status.mode)}   {status.message}", "",
+    shown = [f"{bus.MODES.get(status.mode, status.mode)}   {outlook(status)}   {status.message}", "",
              f"to target {status.target_distance:8.3f} m  {bar(status.target_distance, 1.0)}",
              f"clearance {status.clearance:8.3f} m  {bar(status.clearance, 0.5)}  {status.nearest_link}"
              f" and obstacle {status.nearest_obstacle}",

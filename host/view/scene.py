@@ -13,9 +13,10 @@ from drake import lcmt_viewer_draw, lcmt_viewer_geometry_data as part_t, lcmt_vi
 
 ARM_COLOURS = [(0.85, 0.1, 0.1), (0.95, 0.5, 0.1), (0.9, 0.8, 0.1), (0.2, 0.45, 0.85)]  # near to far
 COLOUR_ENDS_M = [0.05, 0.1, 0.2]
-OBSTACLE, TARGET, TRAIL = (0.7, 0.15, 0.65), (0.05, 0.65, 0.3), (0.1, 0.1, 0.1)
+OBSTACLE, TARGET, TRAIL, GUIDE = (0.7, 0.15, 0.65), (0.05, 0.65, 0.3), (0.1, 0.1, 0.1), (1.0, 0.45, 0.0)
 ARROW_TIMES_S = [0.15, 0.3, 0.45]
 TRAIL_BEADS = 120
+GUIDE_BEADS = 8  # of controller_status_t
 AWAY = (np.array([0.0, 0.0, -1e4]), np.eye(3))
 KINDS = {"sphere": part_t.SPHERE, "cylinder": part_t.CYLINDER, "capsule": part_t.CAPSULE, "box": part_t.BOX}
 OBSTACLE_KINDS = {obstacle_t.SPHERE: ("sphere", 1), obstacle_t.CAPSULE: ("capsule", 2), obstacle_t.BOX: ("box", 3)}

@@ -2,7 +2,8 @@
 """Publish what the controller's channels say as messages of Drake's viewer, for Meldis or another one.
 
 The arm in the shapes and colours of its clearance (red: near, blue: free), obstacles with arrowheads where they will be
-after 0.15, 0.3 and 0.45 s, the target, and the way the tool came.
+after 0.15, 0.3 and 0.45 s, the target, the way the tool came (black beads) and, while a guide leads it, the way it will
+go (orange beads).
 """
 import argparse
 import signal
@@ -44,7 +45,8 @@ class View:
             return
         self.loaded, self.load_due_s = key, time.monotonic() + REPEAT_LOAD_S
         parts = {"target": [scene.part(scene.KINDS["sphere"], [0.03], scene.TARGET)], **scene.arm_parts(self.shapes),
-                 **scene.obstacle_parts(obstacles), **scene.beads("trail", scene.TRAIL_BEADS, 0.006, scene.TRAIL)}
+                 **scene.obstacle_parts(obstacles), **scene.beads("trail", scene.TRAIL_BEADS, 0.006, scene.TRAIL),
+                 **scene.beads("guide", scene.GUIDE_BEADS, 0.012, scene.GUIDE)}
         self.heard.wire.publish("DRAKE_VIEWER_LOAD_ROBOT", scene.load_message(parts).encode())
 
     def follow(self, tool):
@@ -52,6 +54,10 @@ class View:
             self.trail.clear()
         if not self.trail or np.linalg.norm(tool - self.trail[-1]) > TRAIL_STEP_M:
             self.trail.append(tool)
+
+    def guide(self):
+        status = self.heard.get("CONTROLLER_STATUS")
+        return status.guide_tool if status and status.guide_horizon > 0 else []
 
     def draw(self):
         state, target = self.heard.get("ARM_STATE"), self.heard.get("TARGET")
@@ -62,6 +68,7 @@ class View:
         poses = {"target": (target.position, np.eye(3)) if target else scene.AWAY}
         poses |= scene.arm_poses(self.shapes, frames, self.obstacles())
         poses |= scene.bead_poses("trail", scene.TRAIL_BEADS, self.trail)
+        poses |= scene.bead_poses("guide", scene.GUIDE_BEADS, self.guide())
         for obstacle in self.obstacles():
             poses |= scene.obstacle_poses(obstacle)
         self.heard.wire.publish("DRAKE_VIEWER_DRAW", scene.draw_message(poses, time.time()).encode())

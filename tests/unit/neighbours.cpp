@@ -58,7 +58,7 @@ void links_move_as_finite_differences_say(void**) {
     const JointVector q_rad = random.joints(7, -2, 2), qd_radps = random.joints(7, -2, 2);
     const Posture now = forward(lwa3(), q_rad), later = forward(lwa3(), q_rad + dt_s * qd_radps);
     for (const LinkShape& shape : lwa3().shapes) {
-      const Capsule moved_on = moved(link_obstacle(now, shape, qd_radps), dt_s), there = placed(later, shape);
+      const Capsule moved_on = moved(link_obstacle(now, shape, qd_radps), dt_s).capsule, there = placed(later, shape);
       check_near(moved_on.start, there.start, 1e-8);
       check_near(moved_on.end, there.end, 1e-8);
     }

@@ -107,7 +107,7 @@ Fingerprint controller_status() {
   f.add("beta", "double").add("damping", "double").add("shield_correction", "double");
   f.add("cycle_time", "double").add("wake_latency", "double");
   f.add("skipped_cycles", "int64_t").add("rejected_messages", "int64_t").add("message", "string");
-  f.add("foresight", "int8_t").add("guide_horizon", "double");
+  f.add("foresight", "int8_t").add("guide_horizon", "double").add("guide_tool", "double", {"8", "3"});
   return f;
 }
 
@@ -126,7 +126,7 @@ void layouts_are_the_ones_promised(void**) {
       {"joint_state_t", sidestep::joint_state_t::getHash(), joint_state().value(), 0x1806be37545e7d3f},
       {"joint_command_t", sidestep::joint_command_t::getHash(), joint_command().value(), 0xbc0ffe2927412bea},
       {"controller_status_t", sidestep::controller_status_t::getHash(), controller_status().value(),
-       0x6e98040799e0e441},
+       0xea1599a1f65736c3},
   };
   for (const auto& type : types) {
     const auto generated = static_cast<uint64_t>(type.generated);
