@@ -41,7 +41,7 @@ class Newest(dict):
         end = time.monotonic() + duration_s
         while (left_s := end - time.monotonic()) > 0:
             if select.select([self.wire], [], [], left_s)[0]:  # waits where Ctrl-C is heard
-                self.wire.handle()
+                self.wire.handle_timeout(10)  # ms; handle() would wait on for the rest of a broken message
 
 
 def add_lcm_url(parser):

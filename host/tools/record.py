@@ -24,7 +24,7 @@ def record(file, channels, lcm_url):
     try:
         while True:
             select.select([wire], [], [])  # waits where Ctrl-C is heard
-            wire.handle()
+            wire.handle_timeout(10)  # ms; handle() would wait on for the rest of a broken message
     except KeyboardInterrupt:
         log.close()
     return written
