@@ -36,7 +36,8 @@ def main():
     parser.add_argument("--channels", nargs="+", default=list(bus.TYPES), metavar="NAME", help="default: %(default)s")
     bus.add_lcm_url(parser)
     arguments = parser.parse_args()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for stop in (signal.SIGINT, signal.SIGTERM):  # a background job is born deaf to the first
+        signal.signal(stop, signal.default_int_handler)
     print(f"{record(arguments.log, arguments.channels, arguments.lcm_url)} messages in {arguments.log}")
 
 
