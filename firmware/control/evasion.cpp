@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/model/prediction.h"
+
 namespace sidestep {
 namespace {
 
@@ -14,52 +16,38 @@ constexpr double kMissWeight = 1e4;  // cost of a metre of missing clearance
 /// Another side has to be better by this much, or the arm would dither between two.
 constexpr double kClearlyBetter = 0.8;
 
-/// The obstacles of the near pairs, and when the last of them comes closest.
+/// The obstacles of the near pairs where they are, and when the last of them comes closest.
 struct Threats {
-  int count = 0;
-  std::array<int, kMostObstacles> obstacles;
+  BoundedList<Obstacle, kMostObstacles> obstacles;
   double last_s = 0.0;
 };
 
-Threats find_threats(const Clearance& clearance) {
+Threats find_threats(const Clearance& clearance, const ObstacleView& view) {
   Threats threats;
-  for (int i = 0; i < clearance.near_count; ++i) {
-    const NearPair& pair = clearance.near[i];
+  BoundedList<int, kMostObstacles> known;
+  for (const NearPair& pair : clearance.near) {
     threats.last_s = std::max(threats.last_s, pair.approach.time_s);
-    const auto end = threats.obstacles.begin() + threats.count;
-    if (threats.count < kMostObstacles && std::find(threats.obstacles.begin(), end, pair.now.obstacle) == end)
-      threats.obstacles[threats.count++] = pair.now.obstacle;
+    if (known.is_full() || std::find(known.begin(), known.end(), pair.now.obstacle) != known.end()) continue;
+    known.add(pair.now.obstacle);
+    threats.obstacles.add(view.present(pair.now.obstacle));
   }
   return threats;
 }
 
-double clearance_at(const Surroundings& now, const Threats& threats, const JointVector& q_rad, double time_s) {
-  const Posture posture = forward(now.arm, q_rad);
-  std::array<Capsule, kMaxShapes> links;
-  int count = 0;
-  for (const LinkShape& shape : now.arm.shapes)
-    if (shape.body > 0) links[count++] = placed(posture, shape);
-  double least_m = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < threats.count; ++i) {
-    const Obstacle then = now.obstacles.present(threats.obstacles[i], time_s);
-    for (int l = 0; l < count; ++l) least_m = std::min(least_m, surface_distance_m(links[l], then, least_m));
-  }
-  return least_m;
-}
-
-/// The least clearance on the way when the arm takes up a joint velocity as fast as it can and keeps it. Below enough_m
-/// the rest of the way is not looked at.
+/// The least clearance, of most_m, on the way when the arm takes up a joint velocity as fast as it can and keeps it.
+/// Below enough_m the rest of the way is not looked at.
 double least_clearance(const Surroundings& now, const Threats& threats, const JointVector& velocity_radps,
-                       double enough_m) {
+                       double enough_m, double most_m) {
   const JointLimits& limits = now.arm.limits;
   const JointVector change = limits.acceleration_radps2 * kStep_s;
   JointVector q_rad = now.position_rad, qd_radps = now.last_velocity_radps;
-  double least_m = std::numeric_limits<double>::infinity();
+  double least_m = most_m;
   for (double time_s = kStep_s; time_s <= threats.last_s + kAfter_s && least_m >= enough_m; time_s += kStep_s) {
     const JointVector next = qd_radps + (velocity_radps - qd_radps).cwiseMax(-change).cwiseMin(change);
     q_rad = (q_rad + 0.5 * kStep_s * (qd_radps + next)).cwiseMax(limits.lower_rad).cwiseMin(limits.upper_rad);
     qd_radps = next;
-    least_m = std::min(least_m, clearance_at(now, threats, q_rad, time_s));
+    least_m = clearance_after(now.arm, forward(now.arm, q_rad), threats.obstacles.begin(), threats.obstacles.size(),
+                              time_s, least_m);
   }
   return least_m;
 }
@@ -68,7 +56,7 @@ double least_clearance(const Surroundings& now, const Threats& threats, const Jo
 class Judge {
  public:
   Judge(const ShieldSettings& settings, const Surroundings& now, const Nearness& nearness)
-      : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance)) {}
+      : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance, now.obstacles)) {}
 
   /// Exact below too_much; else anything from there on, which takes less time to find out.
   double cost(const JointVector& velocity_radps, double too_much) const {
@@ -83,8 +71,8 @@ class Judge {
 
   /// Exact up to most_m.
   double missing_m(const JointVector& velocity_radps, double most_m) const {
-    const double enough_m = settings_.hard_clearance_m - most_m;
-    return std::max(0.0, settings_.hard_clearance_m - least_clearance(now_, threats_, velocity_radps, enough_m));
+    const double clearance_m = settings_.hard_clearance_m;
+    return clearance_m - least_clearance(now_, threats_, velocity_radps, clearance_m - most_m, clearance_m);
   }
 
  private:

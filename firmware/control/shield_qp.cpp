@@ -33,13 +33,14 @@ struct Problem {
   using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
   Hessian hessian = Hessian::Identity();
+  Hessian inverse_root = Hessian::Identity();  ///< R with R R' = hessian^-1, upper triangular
   Unknowns gradient = Unknowns::Zero();
   Eigen::Matrix<double, kConditions, kUnknowns> conditions = Eigen::Matrix<double, kConditions, kUnknowns>::Zero();
   Eigen::Matrix<double, kConditions, 1> offsets = Eigen::Matrix<double, kConditions, 1>::Ones();
 
   Problem(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
     const int n = static_cast<int>(near.wish_radps.size());
-    hessian.topLeftCorner(n, n) += near.tool_weight * near.tool_jacobian.transpose() * near.tool_jacobian;
+    if (near.tool_weight > 0.0) weigh_tool(near);
     gradient.head(n) = -hessian.topLeftCorner(n, n) * near.wish_radps;
     for (int i = 0; i < n; ++i) {
       conditions(2 * i, i) = 1.0;
@@ -59,10 +60,24 @@ struct Problem {
     }
   }
 
+  /// The slacks stand apart, so that only the joints' corner is not the identity.
+  void weigh_tool(const Nearness& near) {
+    const Eigen::Index n = near.wish_radps.size();
+    hessian.topLeftCorner(n, n) += near.tool_weight * near.tool_jacobian.transpose() * near.tool_jacobian;
+    using Corner = Eigen::Matrix<double, joint_capacity, joint_capacity>;
+    const Eigen::LLT<Corner> cholesky(hessian.template topLeftCorner<joint_capacity, joint_capacity>());
+    for (int i = 0; i < joint_capacity; ++i)
+      inverse_root.col(i).template head<joint_capacity>() = cholesky.matrixU().solve(Corner::Identity().col(i));
+  }
+
   bool solve(Unknowns& x) const {
     eiquadprog::solvers::RtEiquadprog<kUnknowns, 0, kConditions> solver;
     solver.setMaxIter(kMostIterations);
-    const auto status = solver.solve_quadprog(hessian, gradient, Eigen::Matrix<double, 0, kUnknowns>(),
+    solver.m_J = inverse_root;
+    solver.is_inverse_provided_ = true;
+    // Given a root, this solver starts from + hessian^-1 gradient, so it is told the gradient with the other sign.
+    const Unknowns start_gradient = -gradient;
+    const auto status = solver.solve_quadprog(hessian, start_gradient, Eigen::Matrix<double, 0, kUnknowns>(),
                                               Eigen::Matrix<double, 0, 1>(), conditions, offsets, x);
     return status == eiquadprog::solvers::RT_EIQUADPROG_OPTIMAL && x.allFinite();
   }

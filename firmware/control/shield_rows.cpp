@@ -17,8 +17,7 @@ double worst_shortfall(const ShieldRow& row, const VelocityRange& range) {
   return row.bound - row.row.cwiseProduct(range.lower_radps).cwiseMin(row.row.cwiseProduct(range.upper_radps)).sum();
 }
 
-void add(const VelocityRange& range, ShieldRow row, ShieldRows& rows) {
-  row.bound = std::min(row.bound, kLargestDemand_mps);
+void add(const VelocityRange& range, const ShieldRow& row, ShieldRows& rows) {
   const double shortfall = worst_shortfall(row, range);
   if (shortfall <= 0.0) return;
   if (rows.count < kMaxRows) {
@@ -29,15 +28,6 @@ void add(const VelocityRange& range, ShieldRow row, ShieldRows& rows) {
     return worst_shortfall(a, range) < worst_shortfall(b, range);
   });
   if (worst_shortfall(*least, range) < shortfall) *least = row;
-}
-
-/// The side on which a link leaves the way of an obstacle that comes straight at it: the one it is already moving to.
-Vector3 chosen_side(const Approach& approach, const PointJacobian& jacobian, const JointVector& last_velocity_radps,
-                    const Vector3& obstacle_velocity_mps) {
-  if (!approach.head_on) return approach.normal;
-  const double decisive_mps = 0.02;
-  const Vector3 drift = jacobian * last_velocity_radps + decisive_mps * obstacle_velocity_mps.unitOrthogonal();
-  return drift.dot(approach.normal) < 0.0 ? Vector3(-approach.normal) : approach.normal;
 }
 
 /// Distance barrier of one tier: d' >= -gain (d - clearance).
@@ -57,69 +47,93 @@ double hard_barrier(const ShieldSettings& settings, const Surroundings& now, con
   return std::max(by_gain_mps, std::min(closing_mps, 0.0) - stopping_velocity(room_m, braking_mps2, now.period_s));
 }
 
-void add_pass(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range, const NearPair& pair,
-              const Vector3& obstacle_velocity_mps, ShieldRows& rows) {
-  const Approach& approach = pair.approach;
-  if (approach.time_s <= 0.0) return;
-  const PointJacobian jacobian = point_jacobian(now.posture, now.arm.shapes[pair.now.shape].body, approach.on_arm);
-  const Vector3 side = chosen_side(approach, jacobian, now.last_velocity_radps, obstacle_velocity_mps);
-  const JointVector row = jacobian.transpose() * side;
-  const double missing_m = settings.pass_clearance_m - approach.distance_m;
-  if (missing_m <= 0.0) {
-    add(range, {row, barrier(settings.pass_gain_per_s, approach.distance_m, settings.pass_clearance_m), Tier::kPass},
-        rows);
-    return;
+/// Works out the rows of one cycle.
+class RowMaker {
+ public:
+  RowMaker(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
+           const VelocityRange& range, RowSets& rows)
+      : settings_(settings), now_(now), lasting_(lasting), range_(range), rows_(rows) {}
+
+  void add_self(int a, int b) {
+    const LinkShape &first = now_.arm.shapes[a], &second = now_.arm.shapes[b];
+    const Proximity pair = measure_pair(placed(now_.posture, first), placed(now_.posture, second));
+    const JointVector row = point_row(now_.posture, first.body, pair.on_arm, pair.normal) -
+                            point_row(now_.posture, second.body, pair.on_obstacle, pair.normal);
+    add_hard(row, pair.distance_m - settings_.self_clearance_m, 0.0);
   }
-  // The arm needs a while to get moving; what is left of the time has to do.
-  const double time_s = std::max(approach.time_s - settings.pass_reaction_s, kShortestPass_s);
-  const bool two_sides = approach.axis_distance_m < kTwoSides_m;
-  const double other_m = two_sides ? missing_m + 2.0 * approach.axis_distance_m : 0.0;
-  add(range, {row, missing_m / time_s, Tier::kPass, other_m / time_s}, rows);
-}
 
-void add_distance(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range,
-                  const NearPair& pair, const Vector3& obstacle_velocity_mps, bool hard_only, ShieldRows& rows) {
-  const double distance_m = pair.now.distance_m;
-  if (distance_m > settings.range_m) return;
-  const int body = now.arm.shapes[pair.now.shape].body;
-  const JointVector row = point_jacobian(now.posture, body, pair.now.on_arm).transpose() * pair.now.normal;
-  const double approaching_mps = pair.now.normal.dot(obstacle_velocity_mps);
+  void add_distance(const NearPair& pair) {
+    const double distance_m = pair.now.distance_m;
+    if (distance_m > settings_.range_m) return;
+    const JointVector row = point_row(now_.posture, body_of(pair), pair.now.on_arm, pair.now.normal);
+    const double approaching_mps = pair.now.normal.dot(pair.velocity_mps);
 
-  // An obstacle whose way leads past the link need not be run away from: what counts is where it will be.
-  const double passing = std::clamp(
-      (pair.approach.distance_m - settings.hard_clearance_m) / (settings.pass_clearance_m - settings.hard_clearance_m),
-      0.0, 1.0);
-  const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-  const double room_m = distance_m - settings.hard_clearance_m;
-  add(range, {row, hard_barrier(settings, now, row, room_m, threat_mps), Tier::kHard}, rows);
-  if (hard_only) return;
-  add(range,
-      {row, approaching_mps + barrier(settings.comfort_gain_per_s, distance_m, settings.comfort_clearance_m),
-       Tier::kComfort},
-      rows);
-}
+    // An obstacle whose way leads past the link need not be run away from: what counts is where it will be.
+    const double passing = std::clamp((pair.approach.distance_m - settings_.hard_clearance_m) /
+                                          (settings_.pass_clearance_m - settings_.hard_clearance_m),
+                                      0.0, 1.0);
+    const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
+    add_hard(row, distance_m - settings_.hard_clearance_m, threat_mps);
+    add_plan(row, approaching_mps + barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m),
+             Tier::kComfort);
+  }
 
-void add_self(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range, int a, int b,
-              ShieldRows& rows) {
-  const LinkShape &first = now.arm.shapes[a], &second = now.arm.shapes[b];
-  const Proximity pair = measure_pair(placed(now.posture, first), placed(now.posture, second));
-  const PointJacobian relative =
-      point_jacobian(now.posture, first.body, pair.on_arm) - point_jacobian(now.posture, second.body, pair.on_obstacle);
-  const JointVector row = relative.transpose() * pair.normal;
-  add(range, {row, hard_barrier(settings, now, row, pair.distance_m - settings.self_clearance_m, 0.0), Tier::kHard},
-      rows);
-}
+  void add_pass(const NearPair& pair) {
+    const Approach& approach = pair.approach;
+    if (approach.time_s <= 0.0) return;
+    const Vector3 side = approach.head_on ? chosen_side(pair) : approach.normal;
+    const JointVector row = point_row(now_.posture, body_of(pair), approach.on_arm, side);
+    const double missing_m = settings_.pass_clearance_m - approach.distance_m;
+    if (missing_m <= 0.0) {
+      add_plan(row, barrier(settings_.pass_gain_per_s, approach.distance_m, settings_.pass_clearance_m), Tier::kPass);
+      return;
+    }
+    // The arm needs a while to get moving; what is left of the time has to do.
+    const double time_s = std::max(approach.time_s - settings_.pass_reaction_s, kShortestPass_s);
+    const bool two_sides = approach.axis_distance_m < kTwoSides_m;
+    const double other_m = two_sides ? missing_m + 2.0 * approach.axis_distance_m : 0.0;
+    add_plan(row, missing_m / time_s, Tier::kPass, other_m / time_s);
+  }
+
+ private:
+  int body_of(const NearPair& pair) const { return now_.arm.shapes[pair.now.shape].body; }
+
+  void add_hard(const JointVector& row, double room_m, double closing_mps) {
+    const double bound_mps = hard_barrier(settings_, now_, row, room_m, closing_mps);
+    const ShieldRow hard{row, std::min(bound_mps, kLargestDemand_mps), Tier::kHard};
+    add(lasting_, hard, rows_.plan);
+    add(range_, hard, rows_.step);
+  }
+  void add_plan(const JointVector& row, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
+    add(lasting_, {row, std::min(bound_mps, kLargestDemand_mps), tier, other_bound_mps}, rows_.plan);
+  }
+
+  /// The side on which a link leaves the way of an obstacle that comes straight at it: the one it is already moving to.
+  Vector3 chosen_side(const NearPair& pair) const {
+    const double decisive_mps = 0.02;
+    const Approach& approach = pair.approach;
+    const Vector3 drift = point_jacobian(now_.posture, body_of(pair), approach.on_arm) * now_.last_velocity_radps +
+                          decisive_mps * pair.velocity_mps.unitOrthogonal();
+    return drift.dot(approach.normal) < 0.0 ? Vector3(-approach.normal) : approach.normal;
+  }
+
+  const ShieldSettings& settings_;
+  const Surroundings& now_;
+  const VelocityRange& lasting_;
+  const VelocityRange& range_;
+  RowSets& rows_;
+};
 
 }  // namespace
 
-ShieldRows make_rows(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range,
-                     bool hard_only) {
-  ShieldRows rows;
-  for (const auto& [a, b] : now.self_pairs) add_self(settings, now, range, a, b, rows);
-  for (int i = 0; i < now.clearance.near_count; ++i) {
-    const NearPair& pair = now.clearance.near[i];
-    add_distance(settings, now, range, pair, pair.velocity_mps, hard_only, rows);
-    if (!hard_only) add_pass(settings, now, range, pair, pair.velocity_mps, rows);
+RowSets make_rows(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
+                  const VelocityRange& range) {
+  RowSets rows;
+  RowMaker maker(settings, now, lasting, range, rows);
+  for (const auto& [a, b] : now.self_pairs) maker.add_self(a, b);
+  for (const NearPair& pair : now.clearance.near) {
+    maker.add_distance(pair);
+    maker.add_pass(pair);
   }
   return rows;
 }

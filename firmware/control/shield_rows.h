@@ -25,8 +25,14 @@ struct ShieldRows {
   std::array<ShieldRow, kMaxRows> rows;
 };
 
-/// The rows of all near pairs. Which tiers: hard only, or all.
-ShieldRows make_rows(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& range,
-                     bool hard_only);
+/// What the shield asks twice in a cycle.
+struct RowSets {
+  ShieldRows plan;  ///< all tiers, for the velocity that the arm shall come to
+  ShieldRows step;  ///< the hard tier alone, for the step toward it
+};
+
+/// The rows of all near pairs: those that can matter within `lasting`, and within `range`.
+RowSets make_rows(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
+                  const VelocityRange& range);
 
 }  // namespace sidestep

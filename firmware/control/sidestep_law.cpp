@@ -14,8 +14,10 @@ Vector3 clipped(const Vector3& v, double largest) {
 }
 
 /// J* of paper eqs (5) and (6), by the eigenvalues of J J^T.
+template <int rows>
 struct DampedInverse {
-  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+  using Task = Eigen::Matrix<double, rows, 1>;
+  using Gram = Eigen::Matrix<double, rows, rows>;
 
   const TaskJacobian& jacobian;
   Eigen::SelfAdjointEigenSolver<Gram> eigen;
@@ -26,14 +28,22 @@ struct DampedInverse {
     lambda = std::sqrt(damping_squared(gains.lambda_0, gains.sigma_0, sigma_m));
   }
 
-  JointVector solve(const TaskVector& x) const {
+  JointVector solve(const Task& x) const {
     const double smallest = 1e-12;  // sigma^2; only without damping could it be smaller
-    const TaskVector scaled =
-        (eigen.eigenvectors().transpose() * x)
-            .cwiseQuotient((eigen.eigenvalues().array() + lambda * lambda).max(smallest).matrix());
+    const Task scaled = (eigen.eigenvectors().transpose() * x)
+                            .cwiseQuotient((eigen.eigenvalues().array() + lambda * lambda).max(smallest).matrix());
     return jacobian.transpose() * (eigen.eigenvectors() * scaled);
   }
 };
+
+/// The preference: J* (x - J p) + p is p in the null space and x in the task.
+template <int rows>
+void follow(const SidestepGains& gains, const TaskJacobian& jacobian, const TaskVector& x,
+            const JointVector& preferred_radps, Wish& wish) {
+  const DampedInverse<rows> inverse(gains, jacobian);
+  wish.damping = inverse.lambda;
+  wish.velocity_radps = preferred_radps + inverse.solve(x - jacobian * preferred_radps);
+}
 
 }  // namespace
 
@@ -64,10 +74,10 @@ Wish sidestep_law(const SidestepGains& gains, const Situation& now, const JointV
     x.tail<3>() = target.angular_velocity_radps + gains.k_ori_per_s * to_goal.angle() * to_goal.axis();
   }
 
-  // The preference: J* (x - J p) + p is p in the null space and x in the task.
-  const DampedInverse inverse(gains, jacobian);
-  wish.damping = inverse.lambda;
-  wish.velocity_radps = preferred_radps + inverse.solve(x - jacobian * preferred_radps);
+  if (rows == 6)
+    follow<6>(gains, jacobian, x, preferred_radps, wish);
+  else
+    follow<3>(gains, jacobian, x, preferred_radps, wish);
   return wish;
 }
 

@@ -5,19 +5,35 @@
 namespace sidestep {
 namespace {
 
-/// The arm's shapes where they are, and the box around their axes.
+/// A shape of the arm where it is.
+struct Link {
+  Capsule capsule;
+  Vector3 axis;
+  double per_length2;  ///< 1 / |axis|^2, 1/m2; 0 for a sphere
+
+  /// From the nearest point of the axis to p.
+  Vector3 gap_to(const Vector3& p) const {
+    const Vector3 from_start = p - capsule.start;
+    return from_start - std::clamp(axis.dot(from_start) * per_length2, 0.0, 1.0) * axis;
+  }
+};
+
+/// The arm's shapes, and the box around their axes.
 struct Links {
-  std::array<Capsule, kMaxShapes> shapes;
+  BoundedList<Link, kMaxShapes> shapes;
   Vector3 lower = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 upper = -lower;
   double radius_m = 0.0;  // the largest of the shapes
 
   Links(const Arm& arm, const Posture& posture) {
-    for (size_t s = 0; s < arm.shapes.size(); ++s) {
-      const Capsule& link = shapes[s] = placed(posture, arm.shapes[s]);
-      lower = lower.cwiseMin(link.start).cwiseMin(link.end);
-      upper = upper.cwiseMax(link.start).cwiseMax(link.end);
-      radius_m = std::max(radius_m, link.radius_m);
+    for (const LinkShape& shape : arm.shapes) {
+      const Capsule capsule = placed(posture, shape);
+      const Vector3 axis = capsule.end - capsule.start;
+      const double length2_m2 = axis.squaredNorm();
+      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0});
+      lower = lower.cwiseMin(capsule.start).cwiseMin(capsule.end);
+      upper = upper.cwiseMax(capsule.start).cwiseMax(capsule.end);
+      radius_m = std::max(radius_m, capsule.radius_m);
     }
   }
   /// No axis of the arm is nearer to p than the square root of this.
@@ -47,32 +63,42 @@ class Gatherer {
   void gather(const Obstacle& obstacle, int index, double growth_m) {
     const Capsule& reported = obstacle.capsule;
     const Vector3 axis = reported.end - reported.start;
-    const Length length = axis.isZero(0.0) ? Length{} : length_of(obstacle, 0.5 * axis.norm());
+    const bool is_sphere = axis.isZero(0.0);
+    const Length length = is_sphere ? Length{} : length_of(obstacle, 0.5 * axis.norm());
     const Vector3 centre = reported.start + 0.5 * axis + obstacle.velocity_mps * view_.age_s;
     const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
     const double radii_m = links_.radius_m + reported.radius_m + growth_m;
     if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
 
-    const Obstacle present = view_.present(index);
-    for (int s = 0; s < static_cast<int>(arm_.shapes.size()); ++s) {
-      const Capsule& link = links_.shapes[s];
-      const NearestPoints points = nearest_on_axes(link, present.capsule);
-      const double distance2_m2 = (points.a - points.b).squaredNorm();
-      if (distance2_m2 > square(reach_m(link.radius_m + present.capsule.radius_m, core_m, travel_m))) continue;
-      NearPair pair{measure_pair(link, present), {}};
-      pair.now.shape = s;
-      pair.now.obstacle = index;
-      if (pair.now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = pair.now;
-      if (arm_.shapes[s].body == 0) continue;
-      if (pair.now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = pair.now;
-      if (pair.now.distance_m - travel_m > limit_m_) continue;
-      pair.velocity_mps = velocity_at(present, pair.now.on_obstacle);
-      pair.approach = predict_approach(link, present, pair.now, horizon_s_);
-      if (pressing_m(pair) < limit_m_) keep(pair);
-    }
+    if (is_sphere)
+      gather_sphere(centre, obstacle.velocity_mps, index, radii_m, travel_m);
+    else
+      gather_long(index, radii_m, core_m, travel_m);
   }
 
  private:
+  /// The distance to a link is a convex function of the place, so that it falls no faster on the way than at first.
+  void gather_sphere(const Vector3& centre, const Vector3& velocity_mps, int index, double radii_m, double travel_m) {
+    for (int s = 0; s < links_.shapes.size(); ++s) {
+      const Vector3 gap = links_.shapes[s].gap_to(centre);
+      const double distance2_m2 = gap.squaredNorm();
+      if (distance2_m2 > square(reach_m(radii_m, 0.0, travel_m))) continue;
+      const double distance_m = std::sqrt(distance2_m2);
+      const double closing_m = std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m);
+      if (distance_m > reach_m(radii_m, 0.0, std::max(0.0, closing_m))) continue;
+      look_at(s, view_.present(index), index, travel_m);
+    }
+  }
+
+  void gather_long(int index, double radii_m, double core_m, double travel_m) {
+    const Obstacle present = view_.present(index);
+    for (int s = 0; s < links_.shapes.size(); ++s) {
+      const NearestPoints points = nearest_on_axes(links_.shapes[s].capsule, present.capsule);
+      const double reach2_m2 = square(reach_m(radii_m, core_m, travel_m));
+      if ((points.a - points.b).squaredNorm() <= reach2_m2) look_at(s, present, index, travel_m);
+    }
+  }
+
   /// What an obstacle has that is no sphere.
   struct Length {
     double half_m = 0.0;     ///< half its axis
@@ -82,6 +108,19 @@ class Gatherer {
   static Length length_of(const Obstacle& obstacle, double half_m) {
     const double radius_m = obstacle.capsule.radius_m;
     return {half_m, obstacle.is_box() ? radius_m : 0.0, obstacle.angular_velocity_radps.norm() * (half_m + radius_m)};
+  }
+
+  void look_at(int shape, const Obstacle& obstacle, int index, double travel_m) {
+    const Capsule& link = links_.shapes[shape].capsule;
+    Proximity now = measure_pair(link, obstacle);
+    now.shape = shape;
+    now.obstacle = index;
+    if (now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = now;
+    if (arm_.shapes[shape].body == 0) return;
+    if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
+    if (now.distance_m - travel_m > limit_m_) return;
+    const NearPair pair{now, predict_approach(link, obstacle, now, horizon_s_), velocity_at(obstacle, now.on_obstacle)};
+    if (pressing_m(pair) < limit_m_) keep(pair);
   }
 
   /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the
@@ -94,10 +133,13 @@ class Gatherer {
   /// As soon as the list is full, only what is more pressing than the least pressing there comes in, for that one.
   void keep(const NearPair& pair) {
     auto& near = clearance_.near;
-    near[clearance_.near_count < kMaxNear ? clearance_.near_count++ : least_] = pair;
-    if (clearance_.near_count < kMaxNear) return;
+    if (near.is_full())
+      near[least_] = pair;
+    else
+      near.add(pair);
+    if (!near.is_full()) return;
     const auto less = [](const NearPair& a, const NearPair& b) { return pressing_m(a) < pressing_m(b); };
-    least_ = std::max_element(near.begin(), near.end(), less) - near.begin();
+    least_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
     limit_m_ = pressing_m(near[least_]);
   }
 
@@ -107,7 +149,7 @@ class Gatherer {
   const double horizon_s_;
   double limit_m_;  ///< pairs that do not come nearer are not kept
   Clearance& clearance_;
-  std::ptrdiff_t least_ = 0;  ///< pressing pair of a full list
+  int least_ = 0;  ///< pressing pair of a full list
 };
 
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "firmware/model/bounded_list.h"
 #include "firmware/model/kinematics.h"
 #include "firmware/model/proximity.h"
 
@@ -19,10 +19,9 @@ constexpr int kMaxNear = 64;
 
 /// The arm among its obstacles at one instant.
 struct Clearance {
-  Proximity nearest;       ///< by surface distance, every shape of the arm
-  Proximity nearest_axis;  ///< by axis distance, moving shapes only (paper-notes item 7: A_0 and d_0)
-  int near_count = 0;
-  std::array<NearPair, kMaxNear> near;  ///< the pairs within reach, the kMaxNear most pressing, in no order
+  Proximity nearest;                     ///< by surface distance, every shape of the arm
+  Proximity nearest_axis;                ///< by axis distance, moving shapes only (paper-notes item 7: A_0 and d_0)
+  BoundedList<NearPair, kMaxNear> near;  ///< the pairs within reach, the most pressing of too many, in no order
 };
 
 /// What is known of the obstacles: the last set, its age, and by how much each has to be grown, m, for what is not

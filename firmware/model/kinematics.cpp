@@ -38,6 +38,13 @@ PointJacobian point_jacobian(const Posture& posture, int body, const Vector3& p_
   return jacobian;
 }
 
+JointVector point_row(const Posture& posture, int body, const Vector3& p_base, const Vector3& direction) {
+  JointVector row = JointVector::Zero(posture.joints);
+  for (int i = 1; i <= body; ++i)
+    row[i - 1] = posture.rotation[i].col(2).dot((p_base - posture.origin[i]).cross(direction));
+  return row;
+}
+
 TaskJacobian tool_jacobian(const Posture& posture, int rows) {
   TaskJacobian jacobian(rows, posture.joints);
   jacobian.topRows<3>() = point_jacobian(posture, posture.joints, posture.tool_position);

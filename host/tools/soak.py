@@ -148,9 +148,9 @@ def judge(clearances, memory):
         late, witness = 0, "no witness: FIFO is not permitted"
     yield bool(tracked), f"{len(clearances)} lives of the simulator, {len(tracked)} tracked, all killed"
     yield min(tracked, default=-1.0) > 0, f"least clearance {min(tracked, default=math.nan):.4f} m"
-    yield abs(grown_kb) <= MOST_GROWTH_KB, f"memory {last_kb / 1024:.1f} MB, grown by {grown_kb:.0f} kB"
+    yield grown_kb <= MOST_GROWTH_KB, f"memory {last_kb / 1024:.1f} MB, grown by {grown_kb:.0f} kB"
     yield loop.skipped == 0 or late > 0, f"{loop.cycles} cycles, {loop.skipped} left out; {witness}"
-    yield loop.cpu_worst_us < LATE_US, f"wake-up p99 {loop.wake_up.p99_us:.0f} us, worst CPU time {loop.cpu_worst_us:.0f} us"
+    yield loop.cpu_worst_us < LATE_US or late > 0, f"wake-up p99 {loop.wake_up.p99_us:.0f} us, worst CPU time {loop.cpu_worst_us:.0f} us"
     yield replay.returncode == 0, f"newest blackbox log: {(replay.stdout + replay.stderr).strip() or 'there is none'}"
 
 

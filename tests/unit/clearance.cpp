@@ -142,7 +142,7 @@ void near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many(void
     std::vector<double> expected, actual;
     for (const NearPair& pair : all_pairs(posture, view, reach.horizon_s))
       if (moves(pair) && pressing_m(pair) < reach.range_m) expected.push_back(pressing_m(pair));
-    for (int i = 0; i < clearance.near_count; ++i) actual.push_back(pressing_m(clearance.near[static_cast<size_t>(i)]));
+    for (const NearPair& pair : clearance.near) actual.push_back(pressing_m(pair));
     std::sort(expected.begin(), expected.end());
     std::sort(actual.begin(), actual.end());
     (expected.size() > kMaxNear ? overfull : partly) += !expected.empty();
@@ -186,7 +186,7 @@ void nothing_is_near_without_obstacles(void**) {
     const Clearance clearance = measure_clearance(lwa3(), forward(lwa3(), home_rad()), view, {0.4, 1.0});
     assert_int_equal(clearance.nearest.shape, -1);
     assert_int_equal(clearance.nearest_axis.shape, -1);
-    assert_int_equal(clearance.near_count, 0);
+    assert_int_equal(clearance.near.size(), 0);
     check_near(clearance.nearest.distance_m, kInfinity, 0);
   }
 }
@@ -243,7 +243,7 @@ void velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point(void**) {
   set->obstacles[0].angular_velocity_radps = Vector3(0, 2, 0);
   const Clearance clearance =
       measure_clearance(lwa3(), forward(lwa3(), JointVector::Zero(7)), {set.get(), 0, 0}, {0.4, 0.0});
-  assert_true(clearance.near_count > 0);
+  assert_true(clearance.near.size() > 0);
   const NearPair& pair = clearance.near[0];
   const Vector3 arm = pair.now.on_obstacle - Vector3(0.3, 0, 1.5);
   check_near(pair.velocity_mps, Vector3(2 * arm.z(), 0.1, -2 * arm.x()), 1e-12);

@@ -55,7 +55,7 @@ struct Scene {
   Shielded ask() const {
     return shield(model().settings.shield, around(), lasting, range, tool_jacobian(posture, task_rows), wish_radps);
   }
-  ShieldRows hard_rows() const { return make_rows(model().settings.shield, around(), range, true); }
+  ShieldRows hard_rows() const { return make_rows(model().settings.shield, around(), lasting, range).step; }
 
   void add(const Capsule& capsule, const Vector3& velocity_mps = Vector3::Zero()) {
     set.obstacles[static_cast<size_t>(set.count)] = {set.count, capsule, velocity_mps, Vector3::Zero()};
@@ -78,7 +78,7 @@ struct Scene {
   double distance_m() {
     measure();
     double least_m = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < clearance.near_count; ++i) least_m = std::min(least_m, clearance.near[i].now.distance_m);
+    for (const NearPair& pair : clearance.near) least_m = std::min(least_m, pair.now.distance_m);
     return least_m;
   }
 };
@@ -256,7 +256,7 @@ void with_nothing_near_a_wish_within_range_is_granted_exactly(void**) {
       scene.wish_radps[i] = random.uniform(std::max(scene.lasting.lower_radps[i], scene.range.lower_radps[i]),
                                            std::min(scene.lasting.upper_radps[i], scene.range.upper_radps[i]));
     if (!within(scene.range, scene.wish_radps) || !within(scene.lasting, scene.wish_radps)) continue;
-    const ShieldRows rows = make_rows(model().settings.shield, scene.around(), scene.lasting, true);
+    const ShieldRows rows = make_rows(model().settings.shield, scene.around(), scene.lasting, scene.lasting).step;
     if (worst_miss(rows, scene.wish_radps) > 0.0) continue;
     const Shielded given = scene.ask();
     check_near_because(given.velocity_radps, scene.wish_radps, 0.0, "state %d", trial);

@@ -43,12 +43,13 @@ struct Scene {
   ShieldRows rows(const VelocityRange& range, bool hard_only = false) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
     const Surroundings now{lwa3(), posture, q_rad, last_radps, clearance, view, self_pairs, last_radps, 0.01, 1.0};
-    return make_rows(kSettings, now, range, hard_only);
+    const RowSets rows = make_rows(kSettings, now, range, range);
+    return hard_only ? rows.step : rows.plan;
   }
   /// The rows of one pair, none of them dropped.
   ShieldRows rows_of(const NearPair& pair, bool hard_only = false) {
-    clearance.near_count = 1;
-    clearance.near[0] = pair;
+    clearance.near.clear();
+    clearance.near.add(pair);
     return rows(range_of(1e9), hard_only);
   }
 };
@@ -308,8 +309,8 @@ void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(voi
     const JointVector middle = random.joints(7, -2, 2);
     const VelocityRange range{middle - random.joints(7, 0, 0.5), middle + random.joints(7, 0, 0.5)};
     const std::vector<ShieldRow> all = all_rows(scene, near, range);
-    scene.clearance.near_count = static_cast<int>(near.size());
-    std::copy(near.begin(), near.end(), scene.clearance.near.begin());
+    scene.clearance.near.clear();
+    for (const NearPair& pair : near) scene.clearance.near.add(pair);
     const ShieldRows kept = scene.rows(range);
     assert_int_equal(kept.count, std::min(kMaxRows, static_cast<int>(all.size())));
     double least_kept = 1e9, most_left_out = 0.0;
