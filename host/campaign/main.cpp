@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "firmware/io/config.h"
+#include "firmware/io/find_file.h"
 #include "host/campaign/replay.h"
 #include "host/campaign/runner.h"
 #include "host/campaign/table.h"
@@ -91,12 +91,9 @@ std::vector<Task> tasks_of(const Options& options) {
 }
 
 std::string default_config() {
-  namespace fs = std::filesystem;
-  const fs::path wanted = "firmware/config/lwa3.yaml";
-  for (fs::path folder = fs::current_path();; folder = folder.parent_path()) {
-    if (fs::exists(folder / wanted)) return (folder / wanted).string();
-    if (folder == folder.root_path()) throw std::runtime_error("--config: no firmware/config/lwa3.yaml here or above");
-  }
+  for (const char* name : {"firmware/config/lwa3.yaml", "config/lwa3.yaml"})
+    if (const std::string found = find_file(name); !found.empty()) return found;
+  throw std::runtime_error("--config: no firmware/config/lwa3.yaml here or above, nor one that is installed");
 }
 
 /// The tables on standard output, and the rows where they are wanted.
