@@ -13,7 +13,7 @@ MAKEFLAGS += -j$(shell nproc) --no-print-directory
 PYTHON   := $(BUILD)/venv/bin/python
 SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
 # Eigen at -O2 makes gcc see uninitialised values where there are none.
-CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
+CXXFLAGS := -std=c++17 -O2 -g1 -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
 # make sanitize: which sanitizers to build with. The typed subscriptions of LCM's C++ binding are what they must not see.
 CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
@@ -37,6 +37,7 @@ FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
+SHARED   := $(BUILD)/libsidestep.so.0
 LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -174,6 +175,11 @@ $(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
 
 $(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+# The library for processes of others: firmware/library/sidestep.h is all that can be seen of it.
+$(SHARED): $(BUILD)/obj/firmware/library/controller.o $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) -shared -Wl,-soname,$(@F) -Wl,--no-undefined -Wl,--as-needed $^ $(LIBS) -o $@
+
 $(BUILD)/bench: $(BENCH) $(LIBRARIES)
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd -lcmocka $(LIBS) -o $@
 
