@@ -88,6 +88,20 @@ timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and un
 soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
 	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
 
+##@ Installing
+
+install: all $(SHARED) ## programs, library, manual pages, service: below PREFIX (/usr/local), with DESTDIR before it
+	@BUILD=$(BUILD) host/install/install
+
+uninstall: all $(SHARED) ## remove what the same `make install` made
+	@BUILD=$(BUILD) host/install/install undo
+
+deb: all $(SHARED) $(READY).deb ## the same as a Debian package, build/sidestep_VERSION_ARCHITECTURE.deb
+	@BUILD=$(BUILD) host/install/deb
+
+install-test: all $(SHARED) $(READY).deb $(READY).install ## install, package and example, tried outside the source tree
+	@tests/install
+
 ##@ Looking
 
 view: all $(VIEW) ## SCENARIO live in the browser, again and again until Ctrl-C
@@ -114,7 +128,7 @@ help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test peers-test faults fuzz sanitize campaign bench figures timing soak view view-test spy report lint clean help
+.PHONY: all run test peers-test faults fuzz sanitize campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
