@@ -1,5 +1,8 @@
 #include "firmware/io/find_file.h"
 
+#include <dlfcn.h>
+
+#include <array>
 #include <filesystem>
 
 namespace sidestep {
@@ -20,10 +23,12 @@ fs::path find_upwards(fs::path folder, const fs::path& name) {
   }
 }
 
-/// PREFIX/share/sidestep for the program PREFIX/bin/NAME.
-fs::path installed_folder() {
+/// The files that this code may be running from: the program, or a library in a program of somebody else.
+std::array<fs::path, 2> own_files() {
   std::error_code ignored;
-  return fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share/sidestep";
+  Dl_info library{};
+  dladdr(reinterpret_cast<const void*>(&find_file), &library);
+  return {fs::read_symlink("/proc/self/exe", ignored), library.dli_fname ? library.dli_fname : ""};
 }
 
 }  // namespace
@@ -32,7 +37,8 @@ std::string find_file(const std::string& name, const std::string& beside) {
   fs::path found;
   if (!beside.empty()) found = find_upwards(fs::absolute(beside).parent_path(), name);
   if (found.empty()) found = find_upwards(fs::current_path(), name);
-  if (found.empty() && is_file(installed_folder() / name)) found = installed_folder() / name;
+  for (const fs::path& own : own_files())
+    if (found.empty()) found = find_upwards(fs::absolute(own).parent_path(), "share/sidestep" / fs::path(name));
   return found.lexically_normal().string();
 }
 

@@ -5,7 +5,8 @@
 namespace sidestep {
 
 /// The first file of this name: in the folder of the file `beside` (empty: none) or one above it, in the working
-/// directory or one above it, or among what is installed with the running program. Empty when there is none.
+/// directory or one above it, or in share/sidestep beside the bin/ or lib/ that this code runs from. Empty when there
+/// is none.
 std::string find_file(const std::string& name, const std::string& beside = "");
 
 }  // namespace sidestep

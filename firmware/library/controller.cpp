@@ -72,7 +72,7 @@ Model model_of(const std::string& config_file, const Overrides& overrides, Contr
 }  // namespace
 
 struct Controller::Inside {
-  Inside(Model the_model, Foresight foresight)
+  Inside(Model the_model, Controller::Foresight foresight)
       : model(std::move(the_model)),
         adviser(model, foresight == Foresight::kWithinStep),
         jumps(jumps_of(model.settings)) {}

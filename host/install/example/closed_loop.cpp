@@ -9,7 +9,7 @@ using sidestep::Controller;
 
 namespace {
 
-constexpr double kDuration_s = 6.0;
+constexpr int kCycles = 600;
 
 // A sphere that crosses the way, a post and a shelf.
 std::vector<Controller::Obstacle> world_at(double t_s) {
@@ -40,7 +40,8 @@ int run(const char* config) {
 
   double least_clearance_m = 1e9;
   Controller::Result result;
-  for (double t_s = 0.0; t_s < kDuration_s; t_s += dt_s) {
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    const double t_s = cycle * dt_s;
     const std::vector<Controller::Obstacle> world = world_at(t_s);
     controller.set_obstacles(world.data(), static_cast<int>(world.size()), t_s);
     controller.set_target(target, t_s);
