@@ -42,9 +42,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--law", options.law, "sidestep, paper, or plain (attraction only)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sidestep", "paper", "plain"}));
-  app.add_option("--config", options.config,
-                 "of the controller and its arm (default: firmware/config/lwa3.yaml here or above)")
-      ->type_name("FILE");
+  app.add_option("--config", options.config, "of the controller and its arm (default: the LWA3's)")->type_name("FILE");
   app.add_option("--urdf", options.urdf, "of the arm, over what the configuration says; alone: the rest is default")
       ->type_name("FILE");
   app.add_option("--base", options.base, "first link of the arm")->type_name("LINK");

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 name = Path(sys.argv[0]).name
+sys.dont_write_bytecode = True  # nothing that was not installed
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "share/sidestep/tools"))
 try:
     import lcm
