@@ -14,6 +14,8 @@ PYTHON   := $(BUILD)/venv/bin/python
 SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
 # Eigen at -O2 makes gcc see uninitialised values where there are none.
 CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
+# The same objects go into the programs and into the library, which shows no more than its header does.
+CXXFLAGS += -fPIC -fvisibility=hidden
 # make sanitize: which sanitizers to build with. The typed subscriptions of LCM's C++ binding are what they must not see.
 CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
@@ -32,11 +34,13 @@ TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
-              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config io/config_section io/surroundings))
+              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config io/config_section \
+                io/find_file io/reported io/surroundings))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
 LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
+SHARED   := $(BUILD)/libsidestep.so.0
 LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
@@ -68,6 +72,9 @@ fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and 
 sanitize: all $(READY).test ## all tests under ASan and UBSan, those with threads under TSan
 	@tests/sanitize
 
+arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm64 in build/arm64, run the unit tests under qemu
+	@tests/arm64
+
 ##@ Building
 
 all: $(PROGRAMS) ## set up what is missing and build the programs
@@ -86,6 +93,20 @@ timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and un
 
 soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
 	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
+
+##@ Installing
+
+install: all $(SHARED) ## programs, library, manual pages, service: below PREFIX (/usr/local), with DESTDIR before it
+	@BUILD=$(BUILD) host/install/install
+
+uninstall: all $(SHARED) ## remove what the same `make install` made
+	@BUILD=$(BUILD) host/install/install undo
+
+deb: all $(SHARED) $(READY).deb ## the same as a Debian package, build/sidestep_VERSION_ARCHITECTURE.deb
+	@BUILD=$(BUILD) host/install/deb
+
+install-test: all $(SHARED) $(READY).test $(READY).deb $(READY).install ## install, package and example, tried outside the source tree
+	@tests/install
 
 ##@ Looking
 
@@ -107,13 +128,14 @@ lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
 clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar
+	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar \
+	  $(SHARED) $(BUILD)/stage $(BUILD)/deb $(BUILD)/*.deb $(BUILD)/shlibdeps
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
-	  /^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	  /^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test peers-test faults fuzz sanitize campaign bench figures timing soak view view-test spy report lint clean help
+.PHONY: all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 $(READY): host/setup/debian.txt host/setup/python.txt
@@ -130,6 +152,10 @@ $(READY).%: host/setup/debian.txt | $(READY)
 $(BUILD)/.python-%: host/setup/python-%.txt | $(READY)
 	@echo "set-up: Python packages of $<"
 	@$(PYTHON) -m pip install -q --disable-pip-version-check -r $<
+	@touch $@
+
+$(BUILD)/%/.sysroot: host/setup/debian.txt host/setup/sysroot | $(READY)
+	@host/setup/sysroot $* $(@D)/sysroot
 	@touch $@
 
 # Debian's lcm-spy script passes an option that its Java no longer knows.
@@ -155,7 +181,7 @@ $(BUILD)/libcampaign.a: $(CAMPAIGN)
 $(BUILD)/librelay.a: $(RELAY)
 $(BUILD)/libsupport.a: $(SUPPORT)
 $(BUILD)/lib%.a:
-	@rm -f $@ && ar rcs $@ $^
+	@rm -f $@ && $(AR) rcs $@ $^
 
 $(BUILD)/controller: $(BUILD)/obj/firmware/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
@@ -174,6 +200,11 @@ $(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
 
 $(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
 	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+
+# The library for processes of others: firmware/library/sidestep.h is all that can be seen of it.
+$(SHARED): $(BUILD)/obj/firmware/library/controller.o $(BUILD)/libfirmware.a
+	@$(CXX) $(CXXFLAGS) -shared -Wl,-soname,$(@F) -Wl,--no-undefined -Wl,--as-needed $^ $(LIBS) -o $@
+
 $(BUILD)/bench: $(BENCH) $(LIBRARIES)
 	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd -lcmocka $(LIBS) -o $@
 

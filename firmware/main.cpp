@@ -31,7 +31,7 @@ struct Arguments {
 };
 
 void describe(CLI::App& app, Arguments& arguments) {
-  app.add_option("--config", arguments.config, "YAML file of the robot, for example firmware/config/lwa3.yaml");
+  app.add_option("--config", arguments.config, "YAML file of the robot, such as lwa3.yaml");
   app.add_option("--law", arguments.overrides.law, "the law, over the configuration's")
       ->check(CLI::IsMember({"sidestep", "paper"}));
   app.add_option("--rate", arguments.overrides.rate_hz, "cycles a second, over the configuration's")->type_name("HZ");

@@ -128,8 +128,8 @@ def show(outcome):
     sys.stdout.flush()
 
 
-def run_all(binaries, jobs, limit_s):
-    prefix = isolation()
+def run_all(binaries, jobs, limit_s, under):
+    prefix = isolation() + under
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(run, binary, prefix, limit_s) for binary in binaries]
         try:
@@ -148,12 +148,13 @@ def main():
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
     parser.add_argument("--jobs", type=int, default=1, help="binaries at a time (default %(default)s)")
     parser.add_argument("--time-limit", type=float, default=120, metavar="S", help="for each (default %(default)s)")
+    parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND", help="that runs them, such as qemu")
     arguments = parser.parse_args()
     if missing := [binary for binary in arguments.binaries if not os.access(binary, os.X_OK)]:
         parser.error(f"not a program: {missing[0]}")
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        outcomes = run_all(arguments.binaries, arguments.jobs, arguments.time_limit)
+        outcomes = run_all(arguments.binaries, arguments.jobs, arguments.time_limit, arguments.under)
     except KeyboardInterrupt:
         sys.exit(130)
     failed = sum(outcome.failed for outcome in outcomes)

@@ -3,9 +3,9 @@
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 
-#include "firmware/control/jumps.h"
 #include "firmware/io/arm_reader.h"
 #include "firmware/io/message_bytes.h"
+#include "firmware/io/reported.h"
 
 namespace sidestep {
 namespace {
@@ -17,24 +17,6 @@ Vector3 vector(const double* xyz) {
 }
 Quaternion quaternion(const double* wxyz) {
   return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-}
-
-/// An obstacle of that shape at rest; its radius is NaN when the shape makes no sense.
-Obstacle shaped(const obstacle_t& obstacle) {
-  const Vector3 centre = vector(obstacle.position), size = vector(obstacle.size);
-  if (obstacle.shape == obstacle_t::SPHERE) return sphere_obstacle(centre, size[0]);
-  const Obstacle nonsense = sphere_obstacle(centre, std::nan(""));
-  const Quaternion turn = quaternion(obstacle.quaternion);
-  if (!size.allFinite() || size.minCoeff() < 0.0 || !(std::abs(turn.norm() - 1.0) < 1e-3)) return nonsense;
-  const Matrix3 rotation = turn.normalized().toRotationMatrix();
-  if (obstacle.shape == obstacle_t::CAPSULE) return capsule_obstacle(centre, rotation, size[0], size[1]);
-  if (obstacle.shape == obstacle_t::BOX) return box_obstacle(centre, rotation, size);
-  return nonsense;
-}
-
-/// The paper's law is the paper's law and nothing more: it takes obstacles to be where they are said to be.
-double old_place_s(const Settings& settings) {
-  return settings.law == Law::kPaper ? 0.0 : settings.ages.old_place_s;
 }
 
 }  // namespace
@@ -51,8 +33,7 @@ Admission::Admission(int joints, const Settings& settings, bool arm_is_clock, Di
     : joints_(joints),
       ages_(settings.ages),
       arm_is_clock_(arm_is_clock),
-      scratch_(
-          new Scratch{{dialect, joints}, {}, {}, Jumps(settings.obstacle_speed_bound_mps, old_place_s(settings))}) {
+      scratch_(new Scratch{{dialect, joints}, {}, {}, jumps_of(settings)}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 
@@ -82,9 +63,7 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, Target& valu
   value.tracks_orientation = message.tracks_orientation != 0;
   value.orientation = quaternion(message.quaternion);
   value.angular_velocity_radps = vector(message.angular_velocity);
-  if (!plausible(value)) return reject("target with impossible values");
-  value.orientation = value.tracks_orientation ? value.orientation.normalized() : Quaternion::Identity();
-  if (!value.tracks_orientation) value.angular_velocity_radps.setZero();
+  if (!complete(value)) return reject("target with impossible values");
   return target_order_.accept(value.utime, now_s, ages_.target_s);
 }
 
@@ -100,7 +79,8 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
   for (int i = 0; i < value.count; ++i) {
     const obstacle_t& from = message.obstacles[static_cast<size_t>(i)];
     Obstacle& to = value.obstacles[static_cast<size_t>(i)];
-    to = shaped(from);
+    to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position), quaternion(from.quaternion),
+                           vector(from.size));
     to.id = from.id;
     to.velocity_mps = vector(from.velocity);
     if (from.shape != obstacle_t::SPHERE) to.angular_velocity_radps = vector(from.angular_velocity);

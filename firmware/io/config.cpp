@@ -2,34 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <stdexcept>
 
 #include "firmware/io/config_section.h"
+#include "firmware/io/find_file.h"
 #include "firmware/io/surroundings.h"
 #include "firmware/model/self_pairs.h"
 
 namespace sidestep {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// The first existing `relative` in `start` or a folder above it; empty when there is none.
-fs::path find_upwards(fs::path start, const fs::path& relative) {
-  std::error_code ignored;  // what the system cannot look up, as a name that is too long, is not there
-  for (start = fs::absolute(start);; start = start.parent_path()) {
-    if (fs::exists(start / relative, ignored)) return start / relative;
-    if (start == start.root_path()) return {};
-  }
-}
-
-std::string find_urdf(const std::string& config_file, const std::string& urdf) {
-  if (!config_file.empty())
-    if (const fs::path found = find_upwards(fs::absolute(config_file).parent_path(), urdf); !found.empty())
-      return found.lexically_normal().string();
-  const fs::path found = find_upwards(fs::current_path(), urdf);
-  return found.empty() ? urdf : found.lexically_normal().string();
-}
 
 void read_limits(Section limits, Arm& arm) {
   limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps);
@@ -214,7 +195,8 @@ Robot read_robot(Section section, const std::string& config_file, const Override
   if (robot.urdf.empty()) section.fail("urdf", "is missing (or give --urdf)");
   if (robot.base.empty()) section.fail("base", "is missing (or give --base)");
   if (robot.tip.empty()) section.fail("tip", "is missing (or give --tip)");
-  if (overrides.urdf.empty()) robot.urdf = find_urdf(config_file, robot.urdf);
+  if (overrides.urdf.empty())
+    if (const std::string found = find_file(robot.urdf, config_file); !found.empty()) robot.urdf = found;
   return robot;
 }
 

@@ -61,7 +61,7 @@ struct Config {
 };
 
 /// Reads the YAML file (none when the name is empty: defaults, and the arm from the overrides) and the arm's URDF.
-/// The URDF is looked for from the folder of the config file upwards, then from the working directory upwards.
+/// The URDF is looked for from the folder of the config file upwards (find_file.h).
 /// Throws std::runtime_error with one line that names the file and the key; unknown keys are errors.
 Config load_config(const std::string& file, const Overrides& overrides);
 

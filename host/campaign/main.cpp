@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "firmware/io/config.h"
+#include "firmware/io/find_file.h"
 #include "host/campaign/replay.h"
 #include "host/campaign/runner.h"
 #include "host/campaign/table.h"
@@ -42,9 +42,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--law", options.law, "sidestep, paper, or plain (attraction only)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sidestep", "paper", "plain"}));
-  app.add_option("--config", options.config,
-                 "of the controller and its arm (default: firmware/config/lwa3.yaml here or above)")
-      ->type_name("FILE");
+  app.add_option("--config", options.config, "of the controller and its arm (default: the LWA3's)")->type_name("FILE");
   app.add_option("--urdf", options.urdf, "of the arm, over what the configuration says; alone: the rest is default")
       ->type_name("FILE");
   app.add_option("--base", options.base, "first link of the arm")->type_name("LINK");
@@ -91,12 +89,9 @@ std::vector<Task> tasks_of(const Options& options) {
 }
 
 std::string default_config() {
-  namespace fs = std::filesystem;
-  const fs::path wanted = "firmware/config/lwa3.yaml";
-  for (fs::path folder = fs::current_path();; folder = folder.parent_path()) {
-    if (fs::exists(folder / wanted)) return (folder / wanted).string();
-    if (folder == folder.root_path()) throw std::runtime_error("--config: no firmware/config/lwa3.yaml here or above");
-  }
+  for (const char* name : {"firmware/config/lwa3.yaml", "config/lwa3.yaml"})
+    if (const std::string found = find_file(name); !found.empty()) return found;
+  throw std::runtime_error("--config: no firmware/config/lwa3.yaml here or above, nor one that is installed");
 }
 
 /// The tables on standard output, and the rows where they are wanted.

@@ -22,7 +22,7 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--scenario", options.scenario, "what to play (host/scenarios/*.yaml)")->required()->type_name("FILE");
+  app.add_option("--scenario", options.scenario, "what to play, such as paper-c.yaml")->required()->type_name("FILE");
   app.add_flag(
       "--lockstep", options.lockstep,
       "play on the arm's clock: deterministic, as fast as both processes can go (controller: --lockstep, too)");

@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <set>
 #include <stdexcept>
 
+#include "firmware/io/find_file.h"
 #include "host/sim/fields.h"
 
 namespace sidestep::sim {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMostObstacles = 4096;  // what a message may carry
 constexpr Range kPosition{-1000.0, 1000.0};
@@ -22,20 +20,11 @@ constexpr double kBetweenWaypoints_s = 1e-6;  // at least
 constexpr Range kSize{1e-4, 100.0};
 constexpr Range kLimit{1e-6, 1e6};
 
-fs::path found_upwards(fs::path folder, const fs::path& file) {
-  std::error_code ignored;
-  for (;; folder = folder.parent_path()) {
-    if (fs::is_regular_file(folder / file, ignored)) return folder / file;
-    if (folder == folder.parent_path()) return {};
-  }
-}
-
 RobotSource read_robot(Fields fields, const std::string& scenario_file) {
   const std::string urdf = fields.text("urdf");
-  fs::path found = found_upwards(fs::absolute(scenario_file).parent_path(), urdf);
-  if (found.empty()) found = found_upwards(fs::current_path(), urdf);
+  const std::string found = find_file(urdf, scenario_file);
   if (found.empty()) fields.fail("urdf", fmt::format("no file '{}' here or in a folder above", urdf));
-  RobotSource robot{found.string(), fields.text("base"), fields.text("tip")};
+  RobotSource robot{found, fields.text("base"), fields.text("tip")};
   fields.done();
   return robot;
 }

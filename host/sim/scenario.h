@@ -50,9 +50,9 @@ struct Scenario {
   double duration_s() const { return time_s(periods); }
 };
 
-/// Reads a scenario. A relative robot.urdf is looked for in the scenario's folder and all above it, then in the working
-/// folder and all above it. Throws std::runtime_error, one line naming file and key, for anything that is missing,
-/// unknown, of the wrong size, not finite or out of range.
+/// Reads a scenario. robot.urdf is looked for from the scenario's folder upwards (firmware/io/find_file.h). Throws
+/// std::runtime_error, one line naming file and key, for anything that is missing, unknown, of the wrong size, not
+/// finite or out of range.
 Scenario load_scenario(const std::string& file);
 
 }  // namespace sidestep::sim

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import lcm
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "build/lcm/python"))  # behind pydrake, which has types of its own
+# Behind pydrake, which has types of its own. Where the scripts are installed the types stand beside them.
+sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
 from sidestep import controller_status_t, joint_command_t, joint_state_t, obstacle_t, obstacles_t, target_t
 
 TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,

@@ -2,11 +2,8 @@
 import csv
 import math
 import random
-import sys
-from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
-from sidestep import obstacle_t, obstacles_t
+from bus import obstacle_t
 
 
 def obstacle(number, shape, size, position, velocity, about_y=(0.0, 0.0)):

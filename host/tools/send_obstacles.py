@@ -9,13 +9,13 @@ import time
 
 import lcm
 
+import bus
 import crowds
-from crowds import obstacles_t
 
 
 def send(crowd, lcm_url):
     """crowd: seconds since the start -> the obstacles."""
-    wire, message, start = lcm.LCM(lcm_url), obstacles_t(), time.time()
+    wire, message, start = lcm.LCM(lcm_url), bus.obstacles_t(), time.time()
     while True:
         message.utime = int(time.time() * 1e6)
         message.obstacles = crowd(time.time() - start)
@@ -48,7 +48,7 @@ def main():
     kind.add_argument("--random", type=int, metavar="N", help="N spheres that wander around the arm")
     kind.add_argument("--person", action="store_true", help="somebody who walks past the arm, to and fro, as capsules")
     parser.add_argument("--seed", type=int, default=1, help="of the random ones (default %(default)s)")
-    parser.add_argument("--lcm-url", default="", metavar="URL", help="default: LCM_DEFAULT_URL or LCM's own")
+    bus.add_lcm_url(parser)
     arguments, spheres = parser.parse_known_args()  # so that a sphere may begin with a minus
     try:
         crowd = crowd_of(arguments, spheres)

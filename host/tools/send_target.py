@@ -3,14 +3,11 @@
 import argparse
 import curses
 import math
-import sys
 import time
-from pathlib import Path
 
 import lcm
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
-from sidestep import target_t
+from bus import add_lcm_url, target_t
 
 STEP_M = 0.02  # of a key
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
@@ -77,7 +74,7 @@ def parsed():
     way.add_argument("--figure-eight", type=positive, metavar="RADIUS", help="a horizontal 8, half its length in m")
     way.add_argument("--keys", action="store_true", help="move it with the arrow keys, + and -")
     parser.add_argument("--period", type=positive, default=8.0, metavar="S", help="of a path (default %(default)g)")
-    parser.add_argument("--lcm-url", default="", metavar="URL", help="default: LCM_DEFAULT_URL or LCM's own")
+    add_lcm_url(parser)
     arguments = parser.parse_args()
     if len(arguments.numbers) not in (3, 6):
         parser.error("three numbers for the position, or six with the velocity")

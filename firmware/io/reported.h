@@ -1,0 +1,22 @@
+#pragma once
+
+#include "firmware/control/inputs.h"
+#include "firmware/control/jumps.h"
+
+namespace sidestep {
+
+/// From what somebody reports to the values of a cycle, whatever way it came.
+
+/// Values as in obstacle_t.
+enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
+
+/// An obstacle of that shape at rest; not plausible() when shape, size or turn make no sense. size_m as in obstacle_t.
+Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& turn, const Vector3& size_m);
+
+/// Whether the target is plausible; if so it is made complete.
+bool complete(Target& target);
+
+/// The memory of jumps that the settings ask for.
+Jumps jumps_of(const Settings& settings);
+
+}  // namespace sidestep

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/io/adviser.h"
+#include "firmware/io/config.h"
+#include "firmware/io/reported.h"
+#include "firmware/library/sidestep.h"
+
+namespace sidestep {
+namespace {
+
+Vector3 vector(const Controller::Vector& xyz) {
+  return Vector3(xyz[0], xyz[1], xyz[2]);
+}
+Quaternion quaternion(const Controller::Quaternion& wxyz) {
+  return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+}
+JointVector vector(const Controller::Joints& values, int joints) {
+  return Eigen::Map<const JointVector>(values.data(), joints);
+}
+
+Controller::Vector array(const Vector3& xyz) {
+  return {xyz.x(), xyz.y(), xyz.z()};
+}
+Controller::Joints array(const JointVector& values) {
+  Controller::Joints joints{};
+  std::copy(values.begin(), values.end(), joints.begin());
+  return joints;
+}
+
+Obstacle obstacle_of(const Controller::Obstacle& from) {
+  Obstacle to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position_m), quaternion(from.orientation),
+                                  vector(from.size_m));
+  to.id = from.id;
+  to.velocity_mps = vector(from.velocity_mps);
+  if (from.shape != Controller::Shape::kSphere) to.angular_velocity_radps = vector(from.angular_velocity_radps);
+  return to;
+}
+
+Target target_of(const Controller::Target& from) {
+  return {0,
+          vector(from.position_m),
+          vector(from.velocity_mps),
+          from.tracks_orientation,
+          quaternion(from.orientation),
+          vector(from.angular_velocity_radps)};
+}
+
+Controller::Result result_of(const sidestep::Result& from) {
+  const Report& report = from.report;
+  return {from.commanding,
+          array(from.command.position_rad),
+          array(from.command.velocity_radps),
+          static_cast<Controller::Mode>(report.mode),
+          static_cast<int>(report.fault),
+          report.limiting,
+          report.message,
+          report.target_distance_m,
+          report.clearance_m,
+          report.nearest_obstacle,
+          report.outlook == Outlook::kGuided,
+          array(report.tool_position_m),
+          array(report.tool_velocity_mps)};
+}
+
+Model model_of(const std::string& config_file, const Overrides& overrides, Controller::Foresight foresight) {
+  Model model = load_config(config_file, overrides).model;
+  if (foresight == Controller::Foresight::kOff) model.settings.foresight.enabled = false;
+  return model;
+}
+
+}  // namespace
+
+struct Controller::Inside {
+  Inside(Model the_model, Controller::Foresight foresight)
+      : model(std::move(the_model)),
+        adviser(model, foresight == Foresight::kWithinStep),
+        jumps(jumps_of(model.settings)) {}
+
+  /// The newest of a kind, and a place for the next, which counts only when it is found good.
+  template <typename Message>
+  struct Newest {
+    std::unique_ptr<Message> message = std::make_unique<Message>(), draft = std::make_unique<Message>();
+    double received_s = 0.0;
+    int64_t count = 0;
+
+    void take_draft(double now_s) {
+      std::swap(message, draft);
+      received_s = now_s;
+      ++count;
+    }
+    Latest<Message> latest() const { return {count > 0 ? message.get() : nullptr, received_s, count}; }
+  };
+
+  Model model;
+  Adviser adviser;
+  Jumps jumps;
+  State state;
+  Newest<sidestep::ArmState> arm;
+  Newest<sidestep::Target> target;
+  Newest<ObstacleSet> obstacles;
+  bool stopping = false;
+};
+
+Controller::Controller(const std::string& config_file, Foresight foresight)
+    : inside_(std::make_unique<Inside>(model_of(config_file, {}, foresight), foresight)) {}
+
+Controller::Controller(const std::string& urdf, const std::string& base, const std::string& tip, Foresight foresight)
+    : inside_(std::make_unique<Inside>(model_of("", {"", urdf, base, tip}, foresight), foresight)) {}
+
+Controller::~Controller() = default;
+
+int Controller::joints() const {
+  return inside_->model.arm.joints;
+}
+
+double Controller::period_s() const {
+  return inside_->model.settings.period_s();
+}
+
+bool Controller::set_target(const Target& target, double now_s) {
+  auto& newest = inside_->target;
+  *newest.draft = target_of(target);
+  if (!complete(*newest.draft)) return false;
+  newest.take_draft(now_s);
+  return true;
+}
+
+bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_s) {
+  if (count < 0 || count > kMostObstacles) return false;
+  auto& newest = inside_->obstacles;
+  ObstacleSet& set = *newest.draft;
+  set.count = count;
+  for (int i = 0; i < count; ++i) {
+    sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
+    if (!plausible(obstacle)) return false;
+  }
+  inside_->jumps.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
+  newest.take_draft(now_s);
+  return true;
+}
+
+Controller::Result Controller::step(const ArmState& arm, double now_s) {
+  sidestep::ArmState& state = *inside_->arm.draft;
+  state.utime = std::llround(now_s * 1e6);
+  state.position_rad = vector(arm.position_rad, joints());
+  state.velocity_radps = vector(arm.velocity_radps, joints());
+  if (plausible(state, joints())) inside_->arm.take_draft(now_s);
+  return step(now_s);
+}
+
+Controller::Result Controller::step(double now_s) {
+  Inside& in = *inside_;
+  Inputs inputs{in.arm.latest(), in.target.latest(), in.obstacles.latest(), 0, in.stopping};
+  inputs.guide = in.adviser.latest();
+  const sidestep::Result result = sidestep::step(in.model, in.state, inputs, now_s);
+  in.state = result.next;
+  in.adviser.tell(inputs, in.state, now_s);
+  return result_of(result);
+}
+
+void Controller::stop() {
+  inside_->stopping = true;
+}
+
+}  // namespace sidestep
