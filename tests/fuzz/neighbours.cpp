@@ -1,5 +1,5 @@
-// What joins neighbours' links and our own obstacles, and the gate behind it: bytes of any kind, as if they had come over
-// LCM. The first byte of the input says from whom.
+// What joins neighbours' links and our own obstacles, and the gate behind it: bytes of any kind, as if they had come
+// over LCM. The first byte of the input says from whom.
 #include "firmware/io/neighbourhood.h"
 
 #include "firmware/io/admission.h"
