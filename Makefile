@@ -34,8 +34,8 @@ TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
-              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config io/config_section \
-                io/find_file io/reported io/surroundings))
+              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config \
+                io/config_section io/find_file io/neighbourhood io/obstacle_encoder io/reported io/surroundings))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <stdexcept>
 
 #include "firmware/io/config_section.h"
@@ -115,10 +116,14 @@ void read_obstacles(Section obstacles, Settings& settings) {
   obstacles.finish();
 }
 
-void read_channel(Section& section, const std::string& key, std::string& name) {
-  section.text(key, name);
+void check_length(const Section& section, const std::string& key, const std::string& name) {
   const size_t longest = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
   if (name.size() > longest) section.fail(key, "is longer than the 63 characters that LCM can send");
+}
+
+void read_channel(Section& section, const std::string& key, std::string& name) {
+  section.text(key, name);
+  check_length(section, key, name);
 }
 
 void read_channels(Section section, Channels& channels) {
@@ -131,10 +136,28 @@ void read_channels(Section section, Channels& channels) {
   section.finish();
 }
 
+/// What is heard on one channel and what is said on another would be taken for each other.
+void check_names(const Section& root, const Config& config) {
+  const Channels& channels = config.channels;
+  const Neighbours& neighbours = config.neighbours;
+  std::vector<std::pair<std::string, std::string>> names = {{"channels.target", channels.target},
+                                                            {"channels.obstacles", channels.obstacles},
+                                                            {"channels.arm_state", channels.arm_state},
+                                                            {"channels.arm_command", channels.arm_command},
+                                                            {"channels.controller_status", channels.controller_status},
+                                                            {"channels.loop_timing", channels.loop_timing}};
+  if (!neighbours.publish.empty()) names.emplace_back("neighbours.publish", neighbours.publish);
+  for (const std::string& channel : neighbours.listen) names.emplace_back("neighbours.listen", channel);
+  std::map<std::string, std::string> used;
+  for (const auto& [key, name] : names)
+    if (const auto [before, is_new] = used.emplace(name, key); !is_new)
+      root.fail(key, fmt::format("'{}' is already the channel of {}", name, before->second));
+}
+
 /// x y z in m and roll pitch yaw in rad, as in a URDF.
 Eigen::Isometry3d read_pose(Section& section, const std::string& position_key, const std::string& angles_key) {
   Vector3 position_m = Vector3::Zero(), rpy_rad = Vector3::Zero();
-  section.vector(position_key, position_m);
+  section.numbers(position_key, position_m, -1000.0, 1000.0);
   section.vector(angles_key, rpy_rad);
   return Eigen::Translation3d(position_m) * Eigen::AngleAxisd(rpy_rad.z(), Vector3::UnitZ()) *
          Eigen::AngleAxisd(rpy_rad.y(), Vector3::UnitY()) * Eigen::AngleAxisd(rpy_rad.x(), Vector3::UnitX());
@@ -143,8 +166,8 @@ Eigen::Isometry3d read_pose(Section& section, const std::string& position_key, c
 void read_neighbours(Section section, bool wait_for_obstacles, Neighbours& neighbours) {
   read_channel(section, "publish", neighbours.publish);
   section.texts("listen", neighbours.listen);
-  for (const std::string& channel : neighbours.listen)
-    if (channel == neighbours.publish) section.fail("listen", "holds the channel that is published");
+  if (neighbours.listen.size() > kMaxNeighbours) section.fail("listen", fmt::format("more than {}", kMaxNeighbours));
+  for (const std::string& channel : neighbours.listen) check_length(section, "listen", channel);
   if (!neighbours.listen.empty() && !wait_for_obstacles)
     section.fail("listen", "needs obstacles.wait_for_first: nothing moves before all neighbours are heard");
   neighbours.world_from_base = read_pose(section, "base_position_m", "base_rpy_rad");
@@ -225,6 +248,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
   read_neighbours(root.section("neighbours"), settings.wait_for_obstacles, config.neighbours);
+  check_names(root, config);
   read_blackbox(root.section("blackbox"), config.blackbox);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);

@@ -18,6 +18,8 @@ struct Channels {
   std::string loop_timing = "LOOP_TIMING";
 };
 
+constexpr size_t kMaxNeighbours = 16;
+
 /// Other arms in the same workspace; config section `neighbours:`. Links are told in one world frame.
 struct Neighbours {
   std::string publish;              ///< channel for our own links; empty: they are not told

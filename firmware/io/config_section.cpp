@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
+
+#include "firmware/model/text_file.h"
 
 namespace sidestep {
 namespace {
@@ -31,12 +31,9 @@ Section::Section(std::string file, std::string path, const YAML::Node& node)
 }
 
 Section Section::of_file(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  std::ostringstream text;
-  text << stream.rdbuf();
+  const std::string text = read_text_file(file);
   try {
-    return Section(file, "", YAML::Load(text.str()));
+    return Section(file, "", YAML::Load(text));
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(
         fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, on_one_line(error.msg)));
@@ -111,14 +108,18 @@ void Section::flag(const std::string& key, bool& value) {
   if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) fail(key, "must be true or false");
 }
 
-void Section::text(const std::string& key, std::string& value) {
-  const YAML::Node node = take(key);
-  if (node.IsNull()) return;
+std::string Section::to_text(const std::string& key, const YAML::Node& node) const {
   if (!node.IsScalar() || node.Scalar().empty()) fail(key, "must be a text");
   const std::string& text = node.Scalar();
   if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }))
     fail(key, "must not hold control characters");
-  value = text;
+  return text;
+}
+
+void Section::text(const std::string& key, std::string& value) {
+  const YAML::Node node = take(key);
+  if (node.IsNull()) return;
+  value = to_text(key, node);
 }
 
 void Section::texts(const std::string& key, std::vector<std::string>& values) {
@@ -126,10 +127,7 @@ void Section::texts(const std::string& key, std::vector<std::string>& values) {
   if (node.IsNull()) return;
   if (!node.IsSequence()) fail(key, "must be a list of texts");
   values.clear();
-  for (const YAML::Node& entry : node) {
-    if (!entry.IsScalar() || entry.Scalar().empty()) fail(key, "must be a list of texts");
-    values.push_back(entry.Scalar());
-  }
+  for (const YAML::Node& entry : node) values.push_back(to_text(key, entry));
 }
 
 void Section::choice(const std::string& key, std::string& value, const std::vector<std::string>& choices) {

@@ -63,6 +63,7 @@ class Section {
   /// The value of a key, or null; remembers that the key is known.
   YAML::Node take(const std::string& key);
   double to_number(const std::string& key, const YAML::Node& node) const;
+  std::string to_text(const std::string& key, const YAML::Node& node) const;
 
   std::string file_;
   std::string path_;  ///< "limits." for the section `limits`

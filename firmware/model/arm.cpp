@@ -7,17 +7,19 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>
 #include <limits>
-#include <sstream>
 
 #include "firmware/model/fail.h"
 #include "firmware/model/link_shapes.h"
+#include "firmware/model/text_file.h"
 
 namespace sidestep {
 namespace {
+
+// The parsers go into what stands within what by recursion, which has to end before the stack does.
+constexpr int kMostTags = 20000;
 
 using sidestep::to_eigen;
 
@@ -48,12 +50,10 @@ class Complaints : public console_bridge::OutputHandler {
 };
 
 urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) fail("{}: cannot be read", file);
-  std::ostringstream text;
-  text << stream.rdbuf();
+  const std::string text = read_text_file(file);
+  if (std::count(text.begin(), text.end(), '<') > kMostTags) fail("{}: more than {} tags", file, kMostTags);
   const Complaints complaints;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text.str());
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!complaints.first().empty()) fail("{}: not a valid URDF: {}", file, complaints.first());
   if (!model || !model->getRoot()) fail("{}: not a valid URDF", file);
   return model;

@@ -9,7 +9,7 @@
 #include <kdl_parser/kdl_parser.hpp>
 #include <stdexcept>
 
-#include "host/sim/text_file.h"
+#include "firmware/model/text_file.h"
 
 namespace sidestep::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/sim/text_file.h"
+#include "firmware/model/text_file.h"
 
 namespace sidestep::sim {
 namespace {

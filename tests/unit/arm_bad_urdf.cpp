@@ -82,7 +82,7 @@ void a_bad_urdf_is_refused_with_one_line_naming_file_and_culprit(void**) {
 void a_wrong_chain_is_refused_with_one_line(void**) {
   const std::string file = "urdf/lwa3.urdf";
   check(one_line_with(said("urdf/none.urdf"), {"urdf/none.urdf"}), "missing file");
-  check(one_line_with(said("urdf"), {"urdf"}), "a folder");
+  check(one_line_with(said("urdf"), {"urdf: cannot be read"}), "a folder");
   check(one_line_with(said(file, "nowhere"), {file, "nowhere"}), "missing base");
   check(one_line_with(said(file, "base_link", "nowhere"), {file, "nowhere"}), "missing tip");
   check(one_line_with(said(file, "tool", "base_link"), {file, "tool", "base_link"}), "base below tip");
@@ -150,6 +150,14 @@ void an_endless_joint_needs_a_velocity_limit(void**) {
   check(one_line_with(message, {"velocity"}), "'%s'", message.c_str());
 }
 
+void a_urdf_without_end_is_refused(void**) {
+  std::string nested = "<robot name='x'>";
+  for (int i = 0; i < 500000; ++i) nested += "<a>";
+  check(one_line_with(said(scratch_file("nested.urdf", nested)), {"nested.urdf", "tags"}), "nested");
+  check(one_line_with(said(scratch_file("tower.urdf", tower(50000)), "l0", "l6"), {"tower.urdf", "tags"}), "a tower");
+  check(one_line_with(said("/dev/zero"), {"/dev/zero", "larger"}), "endless");
+}
+
 void a_truncated_urdf_never_crashes(void**) {
   const std::string good = lwa3();
   int loaded = 0;
@@ -172,6 +180,7 @@ int main() {
       cmocka_unit_test(shapes_are_counted_after_pruning),
       cmocka_unit_test(limits_are_checked),
       cmocka_unit_test(an_endless_joint_needs_a_velocity_limit),
+      cmocka_unit_test(a_urdf_without_end_is_refused),
       cmocka_unit_test(a_truncated_urdf_never_crashes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -54,8 +54,17 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"channels: {target: \"\"}", "channels.target"},
       {"neighbours: {listen: A}", "neighbours.listen"},
       {"neighbours: {publish: A, listen: [B, A]}", "neighbours.listen"},
+      {"neighbours: {listen: [B, B]}", "neighbours.listen"},
+      {"neighbours: {listen: [OBSTACLES]}", "neighbours.listen"},
+      {"neighbours: {publish: ARM_COMMAND}", "neighbours.publish"},
+      {"neighbours: {listen: [A, \"B\\nC\"]}", "neighbours.listen"},
+      {"neighbours: {listen: [A, B, C, D, E, F, G, H, I, J, K, L, M, N, O, P, Q]}", "neighbours.listen"},
+      {"neighbours: {listen: [A_NAME_THAT_IS_LONGER_THAN_THE_SIXTY_THREE_BYTES_THAT_LCM_CAN_SEND]}",
+       "neighbours.listen"},
+      {"channels: {target: X, obstacles: X}", "channels.obstacles"},
       {"neighbours: {listen: [A]}\nobstacles: {wait_for_first: false}", "neighbours.listen"},
       {"neighbours: {base_position_m: [1, 2]}", "neighbours.base_position_m"},
+      {"neighbours: {base_position_m: [1, 2, 1e308]}", "neighbours.base_position_m"},
       {"neighbours: {base_rpy_rad: [1, 2, .inf]}", "neighbours.base_rpy_rad"},
       // out of range
       {"paper: {k_pos_per_s2: .nan}", "paper.k_pos_per_s2"},
@@ -168,7 +177,9 @@ void a_file_that_cannot_be_read_is_named(void**) {
   const std::string missing = message_of([] { load_config("no/such/file.yaml", {}); });
   check(one_line_with(missing, {"no/such/file.yaml"}), "'%s'", missing.c_str());
   const std::string folder = message_of([] { load_config("firmware/config", {}); });
-  check(one_line_with(folder, {"firmware/config"}), "'%s'", folder.c_str());
+  check(one_line_with(folder, {"firmware/config: cannot be read"}), "'%s'", folder.c_str());
+  const std::string endless = message_of([] { load_config("/dev/zero", {}); });
+  check(one_line_with(endless, {"/dev/zero", "larger"}), "'%s'", endless.c_str());
 }
 
 void a_truncated_config_never_crashes(void**) {
