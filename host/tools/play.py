@@ -36,7 +36,7 @@ def column(run):
 def table(paper, sidestep):
     published = paper.scenario.get("published") or {}
     said = [metres(published.get("axis_distance_m", np.nan)),
-            f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", "-", "-", "-", "-"]
+            f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", *"----"]
     rows = ["least distance, centre to axis", "target distance at the end", "least clearance, surface to surface",
             NEIGHBOUR, "largest joint speed", "contact"]
     lines = [("", "published", "paper's law", "sidestep"), *zip(rows, said, column(paper), column(sidestep))]

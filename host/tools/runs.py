@@ -143,7 +143,8 @@ def wait(processes, limit_s):
 def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
-    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when either process fails.
+    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when a
+    process fails.
     """
     scenario = load_scenario(scenario_file)
     record.parent.mkdir(parents=True, exist_ok=True)
@@ -151,7 +152,8 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
     commands = {f"controller-{arm['name']}" if "name" in arm else "controller":
                 [BUILD / "controller", "--config", config or config_of(arm), "--law", law, *common]
                 for arm in arms_of(scenario)}
-    commands["sim"] = [BUILD / "sim", "--scenario", scenario_file, "--csv", record, *(["--log", log] if log else []), *common]
+    commands["sim"] = [BUILD / "sim", "--scenario", scenario_file, "--csv", record,
+                       *(["--log", log] if log else []), *common]
     logs = {name: record.with_suffix(f".{name}.log") for name in commands}
     processes = {}
     try:
