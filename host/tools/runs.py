@@ -50,20 +50,18 @@ def load(file):
 def load_scenario(file):
     """What the scripts themselves need of a scenario is there; the simulator checks the rest."""
     scenario = load(file)
-    if not isinstance(scenario, dict):
-        raise RunFailed(f"{file}: not a scenario")
-    check(file, scenario, (("title", str), ("duration_s", (int, float))))
+    check(file, scenario, title=str, duration_s=(int, float))
     if "arms" in scenario:
-        check(file, scenario, (("arms", list),))
+        check(file, scenario, arms=list)
     for arm in scenario.get("arms", [scenario]):
-        check(file, arm, (("config", str), ("robot", dict), *([("name", str)] if "arms" in scenario else [])))
+        check(file, arm, config=str, robot=dict, **({"name": str} if "arms" in scenario else {}))
     return scenario
 
 
-def check(file, section, kinds):
-    for key, kind in kinds:
-        if not isinstance(section, dict) or not isinstance(section.get(key), kind):
-            raise RunFailed(f"{file}: {key} is missing or not of its kind")
+def check(file, section, **kinds):
+    for key, kind in kinds.items():
+        if not isinstance(section, dict) or not isinstance(section.get(key), kind) or not section[key]:
+            raise RunFailed(f"{file}: {key} is missing, empty or not of its kind")
 
 
 def arms_of(scenario):
