@@ -9,6 +9,7 @@ Packet OwnLinks::encode(const ArmState& arm, int64_t utime) {
   encoder_.begin(utime);
   int id = 0;
   for (const LinkShape& shape : config_.model.arm.shapes) {
+    if (shape.below_arm) continue;  // the neighbour may stand on it, too
     Obstacle link = transformed(config_.neighbours.world_from_base, link_obstacle(posture, shape, arm.velocity_radps));
     link.id = id++;
     encoder_.add(link);

@@ -1,8 +1,6 @@
 #include "firmware/model/arm.h"
 
-#include <console_bridge/console.h>
 #include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,13 +11,10 @@
 
 #include "firmware/model/fail.h"
 #include "firmware/model/link_shapes.h"
-#include "firmware/model/text_file.h"
+#include "firmware/model/urdf_file.h"
 
 namespace sidestep {
 namespace {
-
-// The parsers go into what stands within what by recursion, which has to end before the stack does.
-constexpr int kMostTags = 20000;
 
 using sidestep::to_eigen;
 
@@ -30,33 +25,6 @@ Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
     for (int column = 0; column < 3; ++column) result.linear()(row, column) = frame.M(row, column);
   }
   return result;
-}
-
-/// Keeps the first complaint of the URDF parser, which would print several and drop the elements it complains about.
-class Complaints : public console_bridge::OutputHandler {
- public:
-  Complaints() { console_bridge::useOutputHandler(this); }
-  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
-  Complaints(const Complaints&) = delete;
-  Complaints& operator=(const Complaints&) = delete;
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text.substr(0, text.find('\n'));
-  }
-  const std::string& first() const { return first_; }
-
- private:
-  std::string first_;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
-  const std::string text = read_text_file(file);
-  if (std::count(text.begin(), text.end(), '<') > kMostTags) fail("{}: more than {} tags", file, kMostTags);
-  const Complaints complaints;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!complaints.first().empty()) fail("{}: not a valid URDF: {}", file, complaints.first());
-  if (!model || !model->getRoot()) fail("{}: not a valid URDF", file);
-  return model;
 }
 
 /// Names of the links from base to tip, both included.
@@ -102,7 +70,7 @@ void append_limits(JointLimits& limits, const urdf::Joint& joint) {
 }  // namespace
 
 Arm load_arm(const std::string& urdf_file, const std::string& base, const std::string& tip, const MeshOptions& meshes) {
-  const urdf::ModelInterfaceSharedPtr model = parse(urdf_file);
+  const urdf::ModelInterfaceSharedPtr model = read_urdf(urdf_file);
   const std::vector<std::string> links = path(urdf_file, *model, base, tip);
   for (size_t i = 1; i < links.size(); ++i) check_joint(urdf_file, *model->getLink(links[i])->parent_joint);
 
@@ -114,6 +82,7 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
 
   ShapeCollector shapes(urdf_file, links, meshes, arm.shapes, arm.remarks);
   Eigen::Isometry3d body_from_link = Eigen::Isometry3d::Identity();  // of the link before the next segment
+  shapes.collect_below(*model->getLink(base));
   shapes.collect(*model->getLink(base), 0, body_from_link);
   for (unsigned i = 0; i < arm.chain.getNrOfSegments(); ++i) {
     const KDL::Segment& segment = arm.chain.getSegment(i);

@@ -21,9 +21,10 @@ struct JointLimits {
 /// One capsule; it encloses one collision shape of the URDF, or a slice of a mesh.
 struct LinkShape {
   std::string link;
-  int body;              ///< 0 is the base; body i moves with joints 1 to i
-  Capsule capsule_body;  ///< in the frame of its body
-  double slack_m = 0.0;  ///< how far the capsules around a mesh stand out from it at most; 0 for other shapes
+  int body;                ///< 0 is the base; body i moves with joints 1 to i
+  Capsule capsule_body;    ///< in the frame of its body
+  double slack_m = 0.0;    ///< how far the capsules around a mesh stand out from it at most; 0 for other shapes
+  bool below_arm = false;  ///< not of the arm but of what its base link is fixed to
 };
 
 /// A serial arm: the KDL chain between a base and a tip link, and the same chain folded for the control cycle.
@@ -52,9 +53,9 @@ constexpr double kDefaultAcceleration_radps2 = 10.0;
 
 /// Reads a URDF and takes the chain base -> tip: 6 to 10 revolute or continuous joints, fixed ones anywhere.
 /// Collision shapes: spheres; cylinders, boxes and meshes as the capsules that enclose them (mesh.h, capsule_fit.h).
-/// Links fixed to the chain count as part of it; what hangs on a further movable joint (fingers) counts too, as if that
-/// joint were at its zero. Throws std::runtime_error with one line that names the file and what is wrong. Limits are
-/// checked by check_limits().
+/// What the base link is fixed to (a pedestal, a torso) is there as shapes of body 0. Links fixed to the chain count as
+/// part of it; what hangs on a further movable joint (fingers) counts too, as if that joint were at its zero. Throws
+/// std::runtime_error with one line that names the file and what is wrong. Limits are checked by check_limits().
 Arm load_arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
              const MeshOptions& meshes = {});
 

@@ -28,8 +28,13 @@ class ShapeCollector {
   /// Throws std::runtime_error, one line naming the file and the link.
   void collect(const urdf::Link& link, int body, const Eigen::Isometry3d& body_from_link);
 
+  /// What the base link is fixed to, and what else is fixed to that; what moves there, as another arm, is not ours.
+  void collect_below(const urdf::Link& base);
+
  private:
-  CapsuleFit enclose(const urdf::Link& link, const urdf::Geometry& geometry) const;
+  void collect_fixed(const urdf::Link& link, const urdf::Link* except, const Eigen::Isometry3d& base_from_link);
+  void add_shapes_of(const urdf::Link& link, int body, const Eigen::Isometry3d& body_from_link, bool below_arm);
+  CapsuleFit enclose(const urdf::Link& link, const urdf::Geometry& geometry, bool below_arm) const;
   CapsuleFit enclose_mesh(const urdf::Link& link, const urdf::Mesh& mesh) const;
   void remark_on(const urdf::Link& link);
   void add(const LinkShape& shape);

@@ -13,7 +13,9 @@ constexpr int kSamples = 200;
 constexpr double kBuiltThatWay = 0.5;  // share of postures in which such a pair touches
 
 bool neighbours(const Arm& arm, int a, int b) {
-  const auto [low, high] = std::minmax(arm.shapes[a].body, arm.shapes[b].body);
+  const LinkShape &one = arm.shapes[a], &other = arm.shapes[b];
+  if (one.body != other.body && (one.below_arm || other.below_arm)) return false;  // joined by the base link
+  const auto [low, high] = std::minmax(one.body, other.body);
   return std::none_of(arm.shapes.begin(), arm.shapes.end(),
                       [low = low, high = high](const LinkShape& s) { return s.body > low && s.body < high; });
 }

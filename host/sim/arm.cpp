@@ -1,43 +1,16 @@
 #include "host/sim/arm.h"
 
-#include <console_bridge/console.h>
 #include <fmt/format.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
 #include <cmath>
 #include <kdl_parser/kdl_parser.hpp>
 #include <stdexcept>
 
-#include "firmware/model/text_file.h"
+#include "firmware/model/urdf_file.h"
 
 namespace sidestep::sim {
 namespace {
-
-// Keeps what urdfdom would print. It goes on after some errors, without the collision shape that it could not read.
-class Complaints : public console_bridge::OutputHandler {
- public:
-  Complaints() { console_bridge::useOutputHandler(this); }
-  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first.empty()) first = text;
-  }
-
-  std::string first;
-};
-
-urdf::ModelInterfaceSharedPtr parse(const std::string& file) {
-  const std::string text = read_text_file(file);
-  Complaints complaints;
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (model && model->getRoot() && complaints.first.empty()) return model;
-  throw std::runtime_error(file + ": not a valid URDF: " + complaints.first.substr(0, complaints.first.find('\n')));
-}
-
-bool is_fixed(const urdf::Link& link) {
-  return link.parent_joint && link.parent_joint->type == urdf::Joint::FIXED;
-}
 
 Eigen::Isometry3d isometry(const KDL::Frame& frame) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -56,7 +29,7 @@ KDL::Frame frame_of(const urdf::Pose& pose) {
 
 class Arm::Builder {
  public:
-  Builder(Arm& arm, const std::string& file) : arm_(arm), file_(file), model_(parse(file)) {}
+  Builder(Arm& arm, const std::string& file) : arm_(arm), file_(file), model_(read_urdf(file)) {}
 
   void build(const std::string& base, const std::string& tip) {
     const urdf::Link* base_link = link_named(base);

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <deque>
 #include <lcm/lcm-cpp.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
@@ -108,31 +109,41 @@ std::optional<Status> decode_status(const uint8_t* bytes, int size) {
 }  // namespace
 
 struct Bus::Wire {
-  Wire(const std::string& url, const std::string& log_file) : lcm(url) {
+  // An ear for one arm.
+  struct Ear {
+    Wire* wire;
+    size_t arm;
+
+    void take_command(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      wire->take(buffer, channel, arm, decode_command);
+    }
+    void take_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      wire->take(buffer, channel, arm, decode_status);
+    }
+  };
+
+  Wire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
+      : lcm(url), channels(arms) {
     if (!lcm.good()) {
       throw std::runtime_error("--lcm-url: cannot open " + (url.empty() ? "LCM's default" : url) +
                                " (no multicast route?)");
     }
     if (!log_file.empty()) log = std::make_unique<lcm::LogFile>(log_file, "w");
     if (log && !log->good()) throw std::runtime_error(log_file + ": cannot be written");
-    // A full queue refuses the newest message; this one holds 10 s and is emptied all the time.
-    lcm.subscribe("ARM_COMMAND", &Wire::take_command, this)->setQueueCapacity(1000);
-    lcm.subscribe("CONTROLLER_STATUS", &Wire::take_status, this)->setQueueCapacity(1000);
-  }
-
-  void take_command(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-    take(buffer, channel, decode_command);
-  }
-  void take_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-    take(buffer, channel, decode_status);
+    for (size_t arm = 0; arm < channels.size(); ++arm) {
+      Ear& ear = ears.emplace_back(Ear{this, arm});
+      // A full queue refuses the newest message; this one holds 10 s and is emptied all the time.
+      lcm.subscribe(channels[arm].arm_command, &Ear::take_command, &ear)->setQueueCapacity(1000);
+      lcm.subscribe(channels[arm].controller_status, &Ear::take_status, &ear)->setQueueCapacity(1000);
+    }
   }
 
   template <typename Decode>
-  void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, const Decode& decode) {
+  void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, size_t arm, const Decode& decode) {
     const int size = static_cast<int>(buffer->data_size);
     keep(channel, buffer->data, size);
     if (auto message = decode(static_cast<const uint8_t*>(buffer->data), size)) {
-      inbox = std::move(*message);
+      inbox = Heard{arm, std::move(*message)};
     } else {
       ++malformed;
     }
@@ -161,40 +172,43 @@ struct Bus::Wire {
   }
 
   lcm::LCM lcm;
+  std::vector<Channels> channels;
+  std::deque<Ear> ears;  // they stay where they are
   std::unique_ptr<lcm::LogFile> log;
   bool log_good = true;
   int64_t clock_us = 0;  // of the last message sent
   std::vector<uint8_t> bytes;
-  std::optional<Answer> inbox;
+  std::optional<Heard> inbox;
   int64_t malformed = 0;
 };
 
-Bus::Bus(const std::string& url, const std::string& log_file) : wire_(std::make_unique<Wire>(url, log_file)) {}
+Bus::Bus(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
+    : wire_(std::make_unique<Wire>(url, log_file, arms)) {}
 Bus::~Bus() = default;
 
-void Bus::publish(const World& world, int64_t utime) {
-  publish(world.target, utime);
-  publish(world.obstacles, utime);
+void Bus::publish(size_t arm, const World& world, int64_t utime) {
+  publish(arm, world.target, utime);
+  publish(arm, world.obstacles, utime);
 }
 
-void Bus::publish(const Target& target, int64_t utime) {
-  wire_->publish("TARGET", message_of(target, utime), utime);
+void Bus::publish(size_t arm, const Target& target, int64_t utime) {
+  wire_->publish(wire_->channels[arm].target, message_of(target, utime), utime);
 }
 
-void Bus::publish(const std::vector<Obstacle>& obstacles, int64_t utime) {
-  wire_->publish("OBSTACLES", message_of(obstacles, utime), utime);
+void Bus::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {
+  wire_->publish(wire_->channels[arm].obstacles, message_of(obstacles, utime), utime);
 }
 
-void Bus::publish(const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {
+void Bus::publish(size_t arm, const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {
   joint_state_t message;
   message.utime = utime;
   message.num_joints = static_cast<int32_t>(q_rad.size());
   message.joint_position.assign(q_rad.data(), q_rad.data() + q_rad.size());
   message.joint_velocity.assign(qd_radps.data(), qd_radps.data() + qd_radps.size());
-  wire_->publish("ARM_STATE", message, utime);
+  wire_->publish(wire_->channels[arm].arm_state, message, utime);
 }
 
-std::optional<Answer> Bus::next(int64_t wait_us) {
+std::optional<Heard> Bus::next(int64_t wait_us) {
   wait_us = std::clamp<int64_t>(wait_us, 0, 100'000);
   const timespec wait{0, static_cast<long>(wait_us * 1000)};
   pollfd readable{wire_->lcm.getFileno(), POLLIN, 0};

@@ -78,11 +78,17 @@ void Live::waiting(const std::string& for_what) {
   if (due()) show("waiting for " + for_what);
 }
 
-void Live::running(const Row& row, double duration_s) {
+void Live::running(const std::vector<const Row*>& arms, double duration_s) {
   if (!due()) return;
-  show(fmt::format("{} {:.2f}/{:.2f} s  target {:.3f} m  clearance {:.3f} m  {}{}  cycle {:.0f} us",
-                   bar(row.t_s / duration_s), row.t_s, duration_s, row.target_distance_m, row.nearest.clearance_m,
-                   name_of(row.status.mode), outlook_of(row.status), row.status.cycle_time_s * 1e6));
+  const double t_s = arms.front()->t_s;
+  std::string line = fmt::format("{} {:.2f}/{:.2f} s", bar(t_s / duration_s), t_s, duration_s);
+  for (const Row* row : arms) {
+    line += fmt::format("  {}target {:.3f} m  clearance {:.3f} m  {}{}  cycle {:.0f} us",
+                        row->arm.empty() ? "" : row->arm + ": ", row->target_distance_m,
+                        std::min(row->nearest.clearance_m, row->neighbour_m), name_of(row->status.mode),
+                        outlook_of(row->status), row->status.cycle_time_s * 1e6);
+  }
+  show(line);
 }
 
 }  // namespace sidestep::sim

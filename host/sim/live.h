@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "host/sim/record.h"
 
@@ -15,7 +16,7 @@ class Live {
 
   /// Before t = 0.
   void waiting(const std::string& for_what);
-  void running(const Row& row, double duration_s);
+  void running(const std::vector<const Row*>& arms, double duration_s);
   /// Nothing more comes: what is printed next starts on a line of its own.
   void end();
 

@@ -3,8 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 
-#include "host/sim/run.h"
+#include "host/sim/play.h"
 
 namespace {
 
@@ -29,7 +30,10 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)")
       ->type_name("URL");
   app.add_option("--log", options.log_file, "keep all messages in this lcm-logger log")->type_name("FILE");
-  app.add_option("--csv", options.csv_file, "one row per control period into this file")->type_name("FILE");
+  app.add_option("--csv", options.csv_file,
+                 "one row per control period into this file; of several arms into one with the arm's name before its "
+                 "suffix each")
+      ->type_name("FILE");
   app.add_option("--wait", options.patience_s, "give up when the controller does not track within this time, s")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86400.0))
@@ -40,10 +44,20 @@ void declare(CLI::App& app, Options& options) {
       "130 interrupted.");
 }
 
-// Says how the run ended, and returns the exit code.
-int conclude(End end, const Run& run, const Bus& bus) {
+// Prints the figures of one arm; returns how many expectations are broken.
+size_t tell(const Run& run, bool judged) {
   if (run.tracked()) fmt::print("{}", run.summary().text(run.scenario()));
   if (run.plant.refused() > 0) fmt::print("  refused commands          {}\n", run.plant.refused());
+  if (!judged) return 0;
+  const auto broken = run.summary().broken(run.scenario().expect);
+  for (const std::string& line : broken) fmt::print("  BROKEN {}\n", line);
+  return broken.size();
+}
+
+// Says how the play ended, and returns the exit code.
+int conclude(End end, const Play& play, const Bus& bus) {
+  size_t broken = 0;
+  for (const Run& run : play.runs) broken += tell(run, end == End::kDone);
   if (bus.malformed() > 0) fmt::print("  malformed messages        {}\n", bus.malformed());
   if (!bus.log_good()) fmt::print(stderr, "sim: --log: could not be written completely\n");
   switch (end) {
@@ -53,34 +67,34 @@ int conclude(End end, const Run& run, const Bus& bus) {
       fmt::print(stderr, "sim: the controller is lost: no answer for 5 s\n");
       return kNoController;
     case End::kNeverTracked:
-      fmt::print(stderr, "sim: gave up waiting for {}\n", run.waits_for());
+      fmt::print(stderr, "sim: gave up waiting for {}\n", play.waits_for());
       return kNoController;
     case End::kDone:
       break;
   }
-  const auto broken = run.summary().broken(run.scenario().expect);
-  for (const std::string& line : broken) fmt::print("  BROKEN {}\n", line);
-  return broken.empty() ? kHeld : kBroken;
+  return broken == 0 ? kHeld : kBroken;
+}
+
+// run.csv of the arm left is run-left.csv.
+std::string csv_file_of(const Scenario& scenario, const std::filesystem::path& file) {
+  if (file.empty() || scenario.arm.empty()) return file;
+  return file.parent_path() / (file.stem().string() + '-' + scenario.arm + file.extension().string());
 }
 
 int play(const Options& options) {
-  const Scenario scenario = load_scenario(options.scenario);
-  Truth truth(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip));
-  if (truth.joints() != scenario.start_rad.size()) {
-    throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,
-                                         scenario.start_rad.size(), truth.joints()));
+  std::vector<Run> runs;
+  std::vector<Channels> channels;
+  for (const Scenario& scenario : load_scenario(options.scenario)) {
+    runs.emplace_back(scenario, csv_file_of(scenario, options.csv_file));
+    channels.push_back(scenario.channels);
   }
-  Bus bus(options.lcm_url, options.log_file);
-  std::optional<CsvFile> csv;
-  const auto obstacles = static_cast<int>(scenario.world.obstacles.size());
-  if (!options.csv_file.empty()) csv.emplace(options.csv_file, truth.joints(), obstacles);
-  Live live(options.quiet, options.lockstep);
-  Run run(scenario, truth, live, csv ? &*csv : nullptr);
+  Bus bus(options.lcm_url, options.log_file, channels);
+  Play play(std::move(runs), Live(options.quiet, options.lockstep));
   const auto loop = options.lockstep ? run_lockstep : run_realtime;
-  const End end = loop(run, bus, options.patience_s, interrupted);
-  live.end();
-  const int exit_code = conclude(end, run, bus);
-  if (csv) csv->close();
+  const End end = loop(play, bus, options.patience_s, interrupted);
+  play.end_live();
+  const int exit_code = conclude(end, play, bus);
+  for (Run& run : play.runs) run.close_csv();
   return exit_code;
 }
 

@@ -40,16 +40,15 @@ std::string header(int joints, int obstacles) {
   for (int i = 1; i <= obstacles; ++i) {
     names += fmt::format(",o{0}_x_m,o{0}_y_m,o{0}_z_m,o{0}_axis_distance_m,o{0}_clearance_m", i);
   }
-  return names + ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s\n";
+  return names + ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s,neighbour_clearance_m\n";
 }
 
 }  // namespace
 
-void judge(Row& row, Truth& truth) {
-  truth.place(row.q_rad);
+void judge(Row& row, const Truth& truth) {
   row.tool_m = truth.tool_m();
   row.target_distance_m = (row.world.target.motion.position_m - row.tool_m).norm();
-  row.nearest = truth.nearest(row.world.obstacles);
+  row.nearest = truth.nearest(row.world.all());
   row.axis_distance_m = truth.axis_distance_m(row.world.obstacles);
 }
 
@@ -68,7 +67,7 @@ void CsvFile::write(const Row& row, const Truth& truth) {
   }
   line.add(static_cast<double>(row.status.mode)).add(row.status.cycle_time_s);
   line.add(row.status.beta).add(row.status.damping);
-  line.add(row.status.foresight).add(row.status.guide_horizon_s);
+  line.add(row.status.foresight).add(row.status.guide_horizon_s).add(row.neighbour_m);
   out_ << line.end();
 }
 

@@ -11,6 +11,7 @@ namespace sidestep::sim {
 
 /// What is known of one control period, at its start.
 struct Row {
+  std::string arm;  ///< its name among several
   double t_s = 0.0;
   JointVector q_rad, qd_radps;  ///< measured
   JointVector command_radps;    ///< for the coming period
@@ -20,10 +21,11 @@ struct Row {
   double target_distance_m = 0.0;
   Nearest nearest;
   double axis_distance_m = kNothingNear;
+  double neighbour_m = kNothingNear;  ///< clearance to the links of other arms
 };
 
-/// Fills in what follows from the joints, the world and the truth. Leaves the truth at the row's joints.
-void judge(Row& row, Truth& truth);
+/// Fills in what follows from the joints, the world and the truth, which is at the row's joints.
+void judge(Row& row, const Truth& truth);
 
 /// One line per control period: time, joints, tool, target, distances, obstacles, controller; 17 significant digits.
 /// The columns are named in the first line. cycle_time_s is the only one that differs between two equal lockstep runs.

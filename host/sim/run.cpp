@@ -1,32 +1,70 @@
 #include "host/sim/run.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
 namespace sidestep::sim {
 
-void Run::take(const Command& command) {
-  if (plant.command(command.qd_radps)) summary_.add(command);
+Run::Run(const Scenario& scenario, const std::string& csv_file)
+    : plant(scenario.plant, scenario.start_rad),
+      scenario_(scenario),
+      truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip)),
+      summary_(scenario.period_us) {
+  if (truth_.joints() != scenario.start_rad.size()) {
+    throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,
+                                         scenario.start_rad.size(), truth_.joints()));
+  }
+  row_.arm = scenario.arm;
+  if (!csv_file.empty()) csv_.emplace(csv_file, truth_.joints(), static_cast<int>(scenario.world.obstacles.size()));
 }
 
-void Run::record(const JointVector& q_rad, const JointVector& qd_radps) {
-  Row row;
-  row.t_s = scenario_.time_s(period());
-  row.q_rad = q_rad;
-  row.qd_radps = qd_radps;
-  row.command_radps = plant.last_command_radps();
-  if (status_) row.status = *status_;
-  row.world = world();
-  judge(row, truth_);
-  summary_.add(row);
-  if (csv_) csv_->write(row, truth_);
-  live_.running(row, scenario_.duration_s());
+void Run::take(const Answer& answer) {
+  if (const auto* status = std::get_if<Status>(&answer)) {
+    status_ = *status;
+  } else if (const auto& command = std::get<Command>(answer); plant.command(command.qd_radps)) {
+    summary_.add(command);
+  }
 }
 
-void Run::show_waiting() {
-  live_.waiting(waits_for());
+void Run::measure() {
+  row_.q_rad = plant.q_rad();
+  row_.qd_radps = plant.qd_radps();
+  truth_.place(row_.q_rad);
+}
+
+void Run::record(const std::vector<Run>& all) {
+  row_.t_s = scenario_.time_s(period());
+  row_.command_radps = plant.last_command_radps();
+  if (status_) row_.status = *status_;
+  row_.world = world();
+  row_.neighbour_m = neighbour_clearance_m(all);
+  judge(row_, truth_);
+  summary_.add(row_);
+  if (csv_) csv_->write(row_, truth_);
+}
+
+double Run::neighbour_clearance_m(const std::vector<Run>& all) const {
+  double least_m = kNothingNear;
+  for (const Run& other : all) {
+    if (&other == this) continue;
+    const Eigen::Isometry3d base_from_other = scenario_.world_from_base.inverse() * other.scenario_.world_from_base;
+    least_m = std::min(least_m, truth_.nearest(other.truth_.links(base_from_other)).clearance_m);
+  }
+  return least_m;
 }
 
 std::string Run::waits_for() const {
-  if (!status_) return "a controller: nothing heard on ARM_COMMAND and CONTROLLER_STATUS yet";
-  return "the controller to track; it says: " + (status_->message.empty() ? "(nothing)" : status_->message);
+  const std::string who = scenario_.arm.empty() ? "" : scenario_.arm + ": ";
+  if (!status_)
+    return fmt::format("{}a controller: nothing heard on {} and {} yet", who, scenario_.channels.arm_command,
+                       scenario_.channels.controller_status);
+  return who + "the controller to track; it says: " + (status_->message.empty() ? "(nothing)" : status_->message);
+}
+
+void Run::close_csv() {
+  if (csv_) csv_->close();
 }
 
 }  // namespace sidestep::sim

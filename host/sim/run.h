@@ -1,34 +1,23 @@
 #pragma once
 
-#include <atomic>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "host/sim/bus.h"
-#include "host/sim/live.h"
 #include "host/sim/record.h"
 #include "host/sim/summary.h"
 
 namespace sidestep::sim {
 
-enum class End { kDone, kInterrupted, kNeverTracked, kLost };
-
-/// Without an answer for this long the controller is lost.
-constexpr int64_t kLostAfterUs = 5'000'000;
-
-/// One play of a scenario: plant, world and what is kept of them. The world stands still until the controller tracks.
+/// One arm that plays its scenario: plant, world and what is kept of them. The world stands still until the first
+/// record().
 class Run {
  public:
-  /// All but the scenario are used until the run is over; csv may be null.
-  Run(const Scenario& scenario, Truth& truth, Live& live, CsvFile* csv)
-      : plant(scenario.plant, scenario.start_rad),
-        scenario_(scenario),
-        truth_(truth),
-        live_(live),
-        csv_(csv),
-        summary_(scenario.period_us) {}
+  /// csv_file: empty for none. Throws std::runtime_error, one line, when the scenario does not fit its URDF or the file
+  /// cannot be written.
+  Run(const Scenario& scenario, const std::string& csv_file);
 
-  void take(const Command& command);
-  void take(const Status& status) { status_ = status; }
+  void take(const Answer& answer);
 
   /// Since then t = 0 has passed.
   bool tracked() const { return summary_.rows() > 0; }
@@ -38,34 +27,32 @@ class Run {
   int period() const { return summary_.rows(); }
   World world() const { return later(scenario_.world, scenario_.time_s(period())); }
 
-  /// Keeps the coming period, with what was measured at its start, and passes on to the next one.
-  void record(const JointVector& q_rad, const JointVector& qd_radps);
+  /// Notes where the arm is at the start of the coming period.
+  void measure();
 
-  /// Says before t = 0 what is being waited for.
-  void show_waiting();
+  /// Keeps the coming period as it was measured and passes on to the next one. `all`: the arms that share the world,
+  /// each as it was measured; this is among them.
+  void record(const std::vector<Run>& all);
+
   std::string waits_for() const;
+  void close_csv();
 
   const Scenario& scenario() const { return scenario_; }
   const std::optional<Status>& status() const { return status_; }
   const Summary& summary() const { return summary_; }
+  const Row& row() const { return row_; }  ///< the last one kept
 
   Plant plant;
 
  private:
+  double neighbour_clearance_m(const std::vector<Run>& all) const;
+
   Scenario scenario_;
-  Truth& truth_;
-  Live& live_;
-  CsvFile* csv_;
+  Truth truth_;
+  std::optional<CsvFile> csv_;
   Summary summary_;
   std::optional<Status> status_;  ///< the last one
+  Row row_;
 };
-
-/// Plays on the arm's clock: for each period sends TARGET, OBSTACLES and ARM_STATE and waits for the answer to exactly
-/// these. The first period whose status says TRACK is t = 0. Gives up when that takes longer than patience_s, before
-/// the first answer on the wall's clock, then on the arm's.
-End run_lockstep(Run& run, Bus& bus, double patience_s, const std::atomic<bool>& interrupted);
-
-/// Plays on the monotonic clock; t = 0 is the arrival of the first status that says TRACK.
-End run_realtime(Run& run, Bus& bus, double patience_s, const std::atomic<bool>& interrupted);
 
 }  // namespace sidestep::sim

@@ -3,28 +3,27 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
 #include <stdexcept>
 
 #include "firmware/io/find_file.h"
 #include "host/sim/fields.h"
+#include "host/sim/world_fields.h"
 
 namespace sidestep::sim {
 namespace {
 
-constexpr int kMostObstacles = 4096;  // what a message may carry
-constexpr Range kPosition{-1000.0, 1000.0};
-constexpr Range kVelocity{-100.0, 100.0};
-constexpr Range kTime{0.0, 1e6};
-constexpr double kBetweenWaypoints_s = 1e-6;  // at least
-constexpr Range kSize{1e-4, 100.0};
 constexpr Range kLimit{1e-6, 1e6};
+constexpr char kNoConfig[] = "none";  // of a controller that got its arm by arguments
+
+std::string found(const Fields& fields, const std::string& scenario_file, const std::string& key,
+                  const std::string& file) {
+  std::string found = find_file(file, scenario_file);
+  if (found.empty()) fields.fail(key, fmt::format("no file '{}' here or in a folder above", file));
+  return found;
+}
 
 RobotSource read_robot(Fields fields, const std::string& scenario_file) {
-  const std::string urdf = fields.text("urdf");
-  const std::string found = find_file(urdf, scenario_file);
-  if (found.empty()) fields.fail("urdf", fmt::format("no file '{}' here or in a folder above", urdf));
-  RobotSource robot{found, fields.text("base"), fields.text("tip")};
+  RobotSource robot{found(fields, scenario_file, "urdf", fields.text("urdf")), fields.text("base"), fields.text("tip")};
   fields.done();
   return robot;
 }
@@ -61,73 +60,6 @@ SensingSpec read_sensing(Fields fields) {
   return sensing;
 }
 
-// From position_m and velocity_mps at t = 0 through the waypoints [t_s, x, y, z, vx, vy, vz].
-std::shared_ptr<const Path> read_path(Fields& fields, const Motion& start) {
-  Path path{{0.0, start.position_m, start.velocity_mps}};
-  for (const Eigen::VectorXd& row :
-       fields.rows("waypoints", {kTime, kPosition, kPosition, kPosition, kVelocity, kVelocity, kVelocity})) {
-    if (row[0] < path.back().t_s + kBetweenWaypoints_s) {
-      fields.fail(fmt::format("waypoints[{}][0]", path.size() - 1), "times must increase from 0");
-    }
-    path.push_back({row[0], row.segment<3>(1), row.segment<3>(4)});
-  }
-  return std::make_shared<const Path>(std::move(path));
-}
-
-Motion read_motion(Fields& fields) {
-  Motion motion;
-  motion.position_m = fields.vector("position_m", kPosition);
-  motion.velocity_mps = fields.vector("velocity_mps", kVelocity);
-  if (fields.has("waypoints")) motion.path = read_path(fields, motion);
-  if (fields.has("quaternion")) {
-    const Eigen::VectorXd wxyz = fields.numbers("quaternion", 4, 4, {-1.001, 1.001});
-    if (std::abs(wxyz.norm() - 1.0) > 1e-3) fields.fail("quaternion", "must have length 1 (order w x y z)");
-    motion.orientation = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
-  }
-  if (fields.has("angular_velocity_radps")) {
-    motion.angular_velocity_radps = fields.vector("angular_velocity_radps", kVelocity);
-  }
-  return motion;
-}
-
-Target read_target(Fields fields) {
-  Target target;
-  target.motion = read_motion(fields);
-  target.tracks_orientation = fields.has("quaternion");
-  if (!target.tracks_orientation && fields.has("angular_velocity_radps")) {
-    fields.fail("angular_velocity_radps", "needs a quaternion");
-  }
-  fields.done();
-  return target;
-}
-
-Solid read_solid(Fields& fields) {
-  const std::string shape = fields.text("shape");
-  if (shape == "sphere") return {Shape::kSphere, {fields.number("radius_m", kSize), 0.0, 0.0}};
-  if (shape == "capsule") {
-    return {Shape::kCapsule, {fields.number("radius_m", kSize), fields.number("length_m", kSize), 0.0}};
-  }
-  if (shape != "box") fields.fail("shape", fmt::format("must be sphere, capsule or box, is '{}'", shape));
-  return {Shape::kBox, fields.vector("edges_m", kSize)};
-}
-
-std::vector<Obstacle> read_obstacles(Fields& scenario) {
-  std::vector<Obstacle> obstacles;
-  std::set<int> ids;
-  std::vector<Fields> list = scenario.list("obstacles");
-  if (list.size() > kMostObstacles) scenario.fail("obstacles", fmt::format("more than {}", kMostObstacles));
-  for (Fields& fields : list) {
-    Obstacle obstacle;
-    obstacle.id = fields.whole("id", {0, 2147483647});
-    if (!ids.insert(obstacle.id).second) fields.fail("id", "used twice");
-    obstacle.solid = read_solid(fields);
-    obstacle.motion = read_motion(fields);
-    fields.done();
-    obstacles.push_back(obstacle);
-  }
-  return obstacles;
-}
-
 std::optional<double> maybe(Fields& fields, const std::string& key) {
   if (!fields.has(key)) return {};
   return fields.number(key, {-1000.0, 1000.0});
@@ -158,25 +90,53 @@ void read_times(Fields& fields, Scenario& scenario) {
   }
 }
 
+// What every arm has of its own; obstacles are there already.
+void read_arm(Fields& fields, Scenario& scenario) {
+  scenario.robot = read_robot(fields.section("robot"), scenario.file);
+  scenario.controller_config = fields.text("config");
+  scenario.start_rad = fields.numbers("start_rad", 1, kMaxJoints, {-100.0, 100.0});
+  scenario.plant = read_plant(fields.section("plant"), static_cast<int>(scenario.start_rad.size()));
+  scenario.world.target = read_target(fields.section("target"));
+  if (scenario.controller_config == kNoConfig) return;
+  const Place place = load_place(found(fields, scenario.file, "config", scenario.controller_config));
+  scenario.channels = place.channels;
+  scenario.world_from_base = place.world_from_base;
+  scenario.world.surroundings = place.surroundings;
+}
+
+// Those of `arms`, which look at the same world, each from its base.
+std::vector<Scenario> read_arms(Fields& fields, const Scenario& common) {
+  std::vector<Scenario> arms;
+  for (Fields& arm : fields.list("arms")) {
+    Scenario& scenario = arms.emplace_back(common);
+    scenario.arm = arm.text("name");
+    read_arm(arm, scenario);
+    arm.done();
+    scenario.world = seen_from(scenario.world_from_base.inverse(), scenario.world);
+  }
+  if (arms.empty()) fields.fail("arms", "at least one");
+  return arms;
+}
+
 }  // namespace
 
-Scenario load_scenario(const std::string& file) {
+std::vector<Scenario> load_scenario(const std::string& file) {
   Fields fields = Fields::from_file(file);
   Scenario scenario;
   scenario.file = file;
   scenario.title = fields.text("title");
-  scenario.robot = read_robot(fields.section("robot"), file);
-  scenario.controller_config = fields.text("config");
   read_times(fields, scenario);
-  scenario.start_rad = fields.numbers("start_rad", 1, kMaxJoints, {-100.0, 100.0});
-  scenario.plant = read_plant(fields.section("plant"), static_cast<int>(scenario.start_rad.size()));
   if (fields.has("sensing")) scenario.sensing = read_sensing(fields.section("sensing"));
-  scenario.world.target = read_target(fields.section("target"));
   scenario.world.obstacles = read_obstacles(fields);
   if (fields.has("expect")) scenario.expect = read_expectations(fields.section("expect"));
   if (fields.has("published")) scenario.published = read_published(fields.section("published"));
+  std::vector<Scenario> arms{scenario};
+  if (fields.has("arms"))
+    arms = read_arms(fields, scenario);
+  else
+    read_arm(fields, arms.front());
   fields.done();
-  return scenario;
+  return arms;
 }
 
 }  // namespace sidestep::sim

@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "host/sim/place.h"
 #include "host/sim/plant.h"
 #include "host/sim/sensing.h"
 #include "host/sim/world.h"
@@ -30,17 +32,21 @@ struct Published {
   std::optional<double> axis_distance_m;
 };
 
+/// What one arm plays.
 struct Scenario {
   std::string file;
+  std::string arm;  ///< its name among several; empty for one alone
   std::string title;
   RobotSource robot;
   std::string controller_config;  ///< the configuration the controller is meant to have
+  Channels channels;
+  Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
   int64_t period_us = 10'000;
   int periods = 0;  ///< the scenario runs from t = 0 to periods * period
   JointVector start_rad;
   PlantSpec plant;
   SensingSpec sensing;
-  World world;  ///< at t = 0
+  World world;  ///< at t = 0, base frame
   Expectations expect;
   Published published;
 
@@ -50,9 +56,10 @@ struct Scenario {
   double duration_s() const { return time_s(periods); }
 };
 
-/// Reads a scenario. robot.urdf is looked for from the scenario's folder upwards (firmware/io/find_file.h). Throws
-/// std::runtime_error, one line naming file and key, for anything that is missing, unknown, of the wrong size, not
-/// finite or out of range.
-Scenario load_scenario(const std::string& file);
+/// Reads a scenario: of one arm, in its base frame, or of several, `arms`, that share duration, obstacles and
+/// expectations, in the world frame of their configurations. robot.urdf and config are looked for from the scenario's
+/// folder upwards (firmware/io/find_file.h). Throws std::runtime_error, one line naming file and key, for anything that
+/// is missing, unknown, of the wrong size, not finite or out of range.
+std::vector<Scenario> load_scenario(const std::string& file);
 
 }  // namespace sidestep::sim

@@ -30,6 +30,7 @@ class Summary {
   int rows_ = 0;
   double clearance_m_ = kNothingNear;
   std::string nearest_ = "no obstacle";
+  double neighbour_m_ = kNothingNear;
   double axis_distance_m_ = kNothingNear;
   double final_distance_m_ = 0.0;
   double joint_speed_radps_ = 0.0;

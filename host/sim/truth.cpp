@@ -57,6 +57,19 @@ Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, double within_m) 
   return best;
 }
 
+std::vector<Obstacle> Truth::links(const Eigen::Isometry3d& other_from_base) const {
+  std::vector<Obstacle> links;
+  for (const ArmPart& part : arm_.parts()) {
+    const Eigen::Isometry3d pose = other_from_base * part.base_from_part;
+    Obstacle& link = links.emplace_back();
+    link.id = static_cast<int32_t>(links.size());
+    link.solid = part.solid;
+    link.motion.position_m = pose.translation();
+    link.motion.orientation = Eigen::Quaterniond(pose.linear());
+  }
+  return links;
+}
+
 double Truth::axis_distance_m(const Obstacle& obstacle) const {
   double least_m = kNothingNear;
   for (const ArmPart& part : arm_.parts()) {

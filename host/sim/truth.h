@@ -34,6 +34,9 @@ class Truth {
   /// grows with the number of obstacles, most of which cost only a comparison of bounding volumes.
   Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const;
 
+  /// The links, each an obstacle where it is now, for another arm to keep clear of.
+  std::vector<Obstacle> links(const Eigen::Isometry3d& other_from_base) const;
+
   /// From one obstacle to the nearest link, as in nearest().
   double clearance_m(const Obstacle& obstacle) const { return nearest({obstacle}).clearance_m; }
 

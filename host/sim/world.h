@@ -37,10 +37,17 @@ struct Target {
 struct World {
   Target target;
   std::vector<Obstacle> obstacles;
+  std::vector<Obstacle> surroundings;  ///< at rest; the controller knows them, nobody tells it
+
+  /// Obstacles, then surroundings.
+  std::vector<Obstacle> all() const;
 };
 
 /// The world dt_s later: positions on their paths or straight on; the orientation follows the constant angular velocity
 /// exactly.
 World later(const World& now, double dt_s);
+
+/// The same with target and obstacles in another frame, at rest against theirs.
+World seen_from(const Eigen::Isometry3d& there_from_here, const World& world);
 
 }  // namespace sidestep::sim

@@ -7,6 +7,7 @@ import numpy as np
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
+CONFIG = ROOT / "firmware/config/lwa3.yaml"
 
 
 def vector(joint, tag, attribute, default=(0, 0, 0)):
@@ -123,13 +124,12 @@ def turn_of(quaternion):
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
-def robot_of(arguments):
+def robot_of(config, arguments):
     """(URDF, base, tip): the configuration's, and over it what the arguments say."""
-    said = yaml.safe_load(arguments.config.read_text())["robot"]
+    said = yaml.safe_load(config.read_text())["robot"]
     return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
 
 
 def add_robot(parser):
-    parser.add_argument("--config", type=Path, default=ROOT / "firmware/config/lwa3.yaml", help="default: the LWA3's")
     for name in ("urdf", "base", "tip"):
         parser.add_argument(f"--{name}", help="over the configuration's")

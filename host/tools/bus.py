@@ -25,16 +25,20 @@ def decoded(channel, data):
 
 
 class Newest(dict):
-    """channel -> the newest message; a channel is missing until something was heard."""
+    """channel -> the newest message; a channel is missing until something was heard.
+
+    channels: of TYPES, or a dict from any channel's name to the one of TYPES that it is like.
+    """
 
     def __init__(self, channels, lcm_url):
         super().__init__()
         self.wire = lcm.LCM(lcm_url)
-        for channel in channels:
+        self.like = channels if isinstance(channels, dict) else {channel: channel for channel in channels}
+        for channel in self.like:
             self.wire.subscribe(channel, self._take)
 
     def _take(self, channel, data):
-        if (message := decoded(channel, data)) is not None:
+        if (message := decoded(self.like[channel], data)) is not None:
             self[channel] = message
 
     def listen(self, duration_s):

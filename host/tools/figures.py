@@ -14,10 +14,9 @@ SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in (
 def draw(scenario_file):
     """Run both laws in lockstep and draw them; the files written."""
     name = scenario_file.stem
-    both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
-                                                for law in runs.LAWS])
-    written = [plots.page(run, runs.FIGURES / f"{name}-{run.law}.png") for run in both]
-    return [*written, plots.comparison(both, runs.FIGURES / f"{name}-both.png")]
+    laws = runs.in_parallel(runs.lockstep_runs, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
+                                                 for law in runs.LAWS])
+    return [file for both in zip(*laws) for file in plots.pages(both)]
 
 
 def main():

@@ -13,8 +13,11 @@ import plots
 import runs
 
 
+NEIGHBOUR = "the same to the other arms"
+
+
 def contact(run):
-    touching = np.flatnonzero(run.columns["clearance_m"] < 0)
+    touching = np.flatnonzero(np.minimum(run.columns["clearance_m"], run.columns["neighbour_clearance_m"]) < 0)
     return f"yes, at {run.columns['t_s'][touching[0]]:.2f} s" if touching.size else "no"
 
 
@@ -26,16 +29,18 @@ def column(run):
     """One law's figures, in the order of the table's rows."""
     speeds = plots.family(run.columns, r"qd\d+_radps")
     return [metres(run.columns["axis_distance_m"].min()), plots.length(run.columns["target_distance_m"][-1]),
-            metres(run.columns["clearance_m"].min()), f"{np.abs(speeds).max():.2f} rad/s", contact(run)]
+            metres(run.columns["clearance_m"].min()), metres(run.columns["neighbour_clearance_m"].min()),
+            f"{np.abs(speeds).max():.2f} rad/s", contact(run)]
 
 
 def table(paper, sidestep):
     published = paper.scenario.get("published") or {}
     said = [metres(published.get("axis_distance_m", np.nan)),
-            f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", "-", "-", "-"]
+            f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", *"----"]
     rows = ["least distance, centre to axis", "target distance at the end", "least clearance, surface to surface",
-            "largest joint speed", "contact"]
+            NEIGHBOUR, "largest joint speed", "contact"]
     lines = [("", "published", "paper's law", "sidestep"), *zip(rows, said, column(paper), column(sidestep))]
+    lines = [line for line in lines if line[0] != NEIGHBOUR or "arms" in paper.scenario]
     widths = [max(map(len, cells)) for cells in zip(*lines)]
     return "\n".join(" | ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
 
@@ -49,12 +54,11 @@ def main():
     print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time", flush=True)
     record = runs.RECORDS / f"{name}-realtime.csv"
     code = runs.execute(scenario_file, "sidestep", record, lockstep=False, log=record.with_suffix(".lcmlog"))
-    both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
-                                                for law in runs.LAWS])
-    print(f"\nBoth laws, in lockstep:\n{table(*both)}\n", flush=True)
-    written = [plots.page(run, runs.FIGURES / f"{name}-{run.law}.png") for run in both]
-    written.append(plots.comparison(both, runs.FIGURES / f"{name}-both.png"))
-    print("figures: " + " ".join(map(runs.shown, written)))
+    laws = runs.in_parallel(runs.lockstep_runs, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
+                                                 for law in runs.LAWS])
+    for both in zip(*laws):
+        print(f"\n{both[0].scenario['title']}; both laws, in lockstep:\n{table(*both)}\n", flush=True)
+        print("figures: " + " ".join(map(runs.shown, plots.pages(both))))
     return code
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.ticker import MultipleLocator
 
 import arm
-from runs import LAWS, ROOT, config_of, load
+from runs import FIGURES, LAWS, ROOT, config_of, load
 
 # Okabe and Ito's colours: told apart with every kind of colour vision.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PINK = ("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2",
@@ -280,6 +280,12 @@ def comparison(runs, file):
         panels[1, 0].text(0.5, 0.5, "no obstacles", ha="center", color=GREY)
     plot_fastest_joint(panels[1, 1], runs)
     return save(figure, file)
+
+
+def pages(runs):
+    """The pages of one scenario under both laws, and the two laid over each other; the files written."""
+    written = [page(run, FIGURES / f"{run.name}-{run.law}.png") for run in runs]
+    return [*written, comparison(runs, FIGURES / f"{runs[0].name}-both.png")]
 
 
 def save(figure, file):

@@ -117,10 +117,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
     parser.add_argument("-o", "--output", type=Path, default=Path("report.html"), help="default: %(default)s")
+    parser.add_argument("--config", type=Path, default=arm.CONFIG, help="default: the LWA3's")
     arm.add_robot(parser)
     arguments = parser.parse_args()
     try:
-        arguments.output.write_text(page(data_of(arguments.log, arm.robot_of(arguments))))
+        arguments.output.write_text(page(data_of(arguments.log, arm.robot_of(arguments.config, arguments))))
     except (NoRun, OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
         sys.exit(2)

@@ -50,12 +50,29 @@ def load(file):
 def load_scenario(file):
     """What the scripts themselves need of a scenario is there; the simulator checks the rest."""
     scenario = load(file)
-    if not isinstance(scenario, dict):
-        raise RunFailed(f"{file}: not a scenario")
-    for key, kind in (("title", str), ("config", str), ("robot", dict), ("duration_s", (int, float))):
-        if not isinstance(scenario.get(key), kind):
-            raise RunFailed(f"{file}: {key} is missing or not of its kind")
+    check(file, scenario, title=str, duration_s=(int, float))
+    if "arms" in scenario:
+        check(file, scenario, arms=list)
+    for arm in scenario.get("arms", [scenario]):
+        check(file, arm, config=str, robot=dict, **({"name": str} if "arms" in scenario else {}))
     return scenario
+
+
+def check(file, section, **kinds):
+    for key, kind in kinds.items():
+        if not isinstance(section, dict) or not isinstance(section.get(key), kind) or not section[key]:
+            raise RunFailed(f"{file}: {key} is missing, empty or not of its kind")
+
+
+def arms_of(scenario):
+    """A scenario for each of its arms; the scenario itself when it is of one arm."""
+    return [scenario | arm | {"title": f"{scenario['title']}: {arm['name']}"} for arm in scenario.get("arms", [])] or [
+        scenario]
+
+
+def file_of(arm, file):
+    """Where the simulator writes what is one arm's."""
+    return file.with_stem(f"{file.stem}-{arm['name']}") if "name" in arm else file
 
 
 def config_of(scenario):
@@ -110,9 +127,10 @@ def last_line(log):
     return next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
 
 
-def wait(sim, controller, limit_s):
+def wait(processes, limit_s):
+    """Until one of them ends."""
     deadline = time.monotonic() + limit_s
-    while sim.poll() is None and controller.poll() is None:
+    while all(process.poll() is None for process in processes.values()):
         if stopping.is_set():
             raise KeyboardInterrupt
         if time.monotonic() > deadline:
@@ -123,36 +141,47 @@ def wait(sim, controller, limit_s):
 def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
-    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when either process fails.
+    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when a
+    process fails.
     """
     scenario = load_scenario(scenario_file)
     record.parent.mkdir(parents=True, exist_ok=True)
-    logs = {name: record.with_suffix(f".{name}.log") for name in ("controller", "sim")}
     common = ["--lockstep"] * lockstep + (["--lcm-url", lcm_url] if lcm_url else [])
+    commands = {f"controller-{arm['name']}" if "name" in arm else "controller":
+                [BUILD / "controller", "--config", config or config_of(arm), "--law", law, *common]
+                for arm in arms_of(scenario)}
+    commands["sim"] = [BUILD / "sim", "--scenario", scenario_file, "--csv", record,
+                       *(["--log", log] if log else []), *common]
+    logs = {name: record.with_suffix(f".{name}.log") for name in commands}
     processes = {}
-    with open(logs["controller"], "w") as controller_log, open(logs["sim"], "w") as sim_log:
-        try:
-            processes["controller"] = start([BUILD / "controller", "--config", config or config_of(scenario), "--law",
-                                             law, *common], controller_log)
-            processes["sim"] = start([BUILD / "sim", "--scenario", scenario_file, "--csv", record,
-                                      *(["--log", log] if log else []), *common],
-                                     sim_log if lockstep else None)
-            wait(processes["sim"], processes["controller"], scenario["duration_s"] * (10 if lockstep else 1) + 60)
-            lost = processes["controller"].poll()
-        finally:
-            codes = {name: stop(process) for name, process in reversed(processes.items())}
-    if lost is None and codes["sim"] not in (HELD, BROKEN):
+    try:
+        for name, command in commands.items():
+            with open(logs[name], "w") as output:
+                processes[name] = start(command, output if lockstep or name != "sim" else None)
+        wait(processes, scenario["duration_s"] * (10 if lockstep else 1) + 60)
+        lost = {name for name, process in processes.items() if name != "sim" and process.poll() is not None}
+    finally:
+        codes = {name: stop(process) for name, process in reversed(processes.items())}
+    sim = codes.pop("sim")
+    if not lost and sim not in (HELD, BROKEN):
         said = f": {last_line(logs['sim'])}" if lockstep else ""
-        raise RunFailed(f"build/sim {ending(codes['sim'])}{said}", codes["sim"])
-    if codes["controller"] or lost is not None:
-        raise RunFailed(f"build/controller {ending(codes['controller'])}: {last_line(logs['controller'])}")
-    return codes["sim"]
+        raise RunFailed(f"build/sim {ending(sim)}{said}", sim)
+    for name, code in codes.items():
+        if code or name in lost:
+            raise RunFailed(f"build/controller {ending(code)}: {last_line(logs[name])}")
+    return sim
+
+
+def lockstep_runs(scenario_file, law, record, config=None):
+    """One run on its own LCM bus, as fast as it goes: what came of each of its arms."""
+    code = execute(scenario_file, law, record, config, private_url())
+    return [Run(file_of(arm, Path(scenario_file)).stem, law, arm, read_csv(file_of(arm, record)), code)
+            for arm in arms_of(load_scenario(scenario_file))]
 
 
 def lockstep_run(scenario_file, law, record, config=None):
-    """One run on its own LCM bus, as fast as it goes."""
-    code = execute(scenario_file, law, record, config, private_url())
-    return Run(Path(scenario_file).stem, law, load_scenario(scenario_file), read_csv(record), code)
+    """The same of one arm."""
+    return lockstep_runs(scenario_file, law, record, config)[0]
 
 
 def in_parallel(function, jobs, workers=2, done=lambda count, total: None):

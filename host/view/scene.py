@@ -13,7 +13,8 @@ from drake import lcmt_viewer_draw, lcmt_viewer_geometry_data as part_t, lcmt_vi
 
 ARM_COLOURS = [(0.85, 0.1, 0.1), (0.95, 0.5, 0.1), (0.9, 0.8, 0.1), (0.2, 0.45, 0.85)]  # near to far
 COLOUR_ENDS_M = [0.05, 0.1, 0.2]
-OBSTACLE, TARGET, TRAIL, GUIDE = (0.7, 0.15, 0.65), (0.05, 0.65, 0.3), (0.1, 0.1, 0.1), (1.0, 0.45, 0.0)
+OBSTACLE, SURROUNDING = (0.7, 0.15, 0.65), (0.6, 0.6, 0.6)
+TARGET, TRAIL, GUIDE = (0.05, 0.65, 0.3), (0.1, 0.1, 0.1), (1.0, 0.45, 0.0)
 ARROW_TIMES_S = [0.15, 0.3, 0.45]
 TRAIL_BEADS = 120
 GUIDE_BEADS = 8  # of controller_status_t
@@ -69,7 +70,8 @@ def obstacle_parts(obstacles):
     parts = {}
     for obstacle in obstacles:
         kind, numbers = OBSTACLE_KINDS[obstacle.shape]
-        parts[f"obstacle::{obstacle.id}"] = [part(KINDS[kind], obstacle.size[:numbers], OBSTACLE)]
+        colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
+        parts[f"obstacle::{obstacle.id}"] = [part(KINDS[kind], obstacle.size[:numbers], colour)]
         for i in range(len(ARROW_TIMES_S)):
             parts[f"arrow::{obstacle.id}::{i}"] = [part(part_t.MESH, arrowhead(), OBSTACLE)]
     return parts

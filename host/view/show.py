@@ -21,8 +21,8 @@ PAUSE_S = 1.0  # between two runs
 @contextmanager
 def viewers(scenario, port, lcm_url=""):
     """Meldis and the publisher, for as long as the block lasts; Meldis takes its LCM network from the environment."""
-    robot, bus = scenario["robot"], ["--lcm-url", lcm_url] if lcm_url else []
-    view = [ROOT / "host/view/view.py", "--urdf", ROOT / robot["urdf"], "--base", robot["base"], "--tip", robot["tip"]]
+    bus = ["--lcm-url", lcm_url] if lcm_url else []
+    view = [ROOT / "host/view/view.py", "--config", *map(runs.config_of, runs.arms_of(scenario))]
     environment = os.environ | ({"LCM_DEFAULT_URL": lcm_url} if lcm_url else {})
     meldis, started = ["-m", "pydrake.visualization.meldis", "--port", port, "--idle-timeout", 0], []
     runs.RECORDS.mkdir(parents=True, exist_ok=True)

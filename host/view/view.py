@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Publish what the controller's channels say as messages of Drake's viewer, for Meldis or another one.
 
-The arm in the shapes and colours of its clearance (red: near, blue: free), obstacles with arrowheads where they will be
-after 0.15, 0.3 and 0.45 s, the target, the way the tool came (black beads) and, while a guide leads it, the way it will
-go (orange beads).
+Each arm in the shapes and colours of its clearance (red: near, blue: free), obstacles with arrowheads where they will
+be after 0.15, 0.3 and 0.45 s, the configuration's surroundings (grey), the target, the way the tool came (black beads)
+and, while a guide leads it, the way it will go (orange beads).
 """
 import argparse
 import signal
@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT / "host/tools"))
 import arm
 import bus
 import scene
+from side import Side
 
 PERIOD_S = 0.04
 REPEAT_LOAD_S = 1.0  # a viewer that starts later has to hear it, too
@@ -27,50 +28,52 @@ JUMP_M = 0.3         # in one period: another run has begun
 
 
 class View:
-    def __init__(self, robot, lcm_url):
-        self.chain, self.shapes = arm.chain(*robot), arm.shapes(*robot)
-        self.heard = bus.Newest(["ARM_STATE", "OBSTACLES", "TARGET", "CONTROLLER_STATUS"], lcm_url)
-        self.trail = deque(maxlen=scene.TRAIL_BEADS)
+    """Of all sides; what each has of its own is named after it. Obstacles are the same for all."""
+
+    def __init__(self, sides, lcm_url):
+        self.sides = sides
+        self.heard = bus.Newest({name: kind for side in sides for name, kind in side.channels().items()}, lcm_url)
+        self.trails = [deque(maxlen=scene.TRAIL_BEADS) for _ in sides]
+        self.surroundings = [thing for side in sides for thing in side.surroundings]
         self.loaded, self.load_due_s = None, 0.0
 
-    def obstacles(self):
-        message = self.heard.get("OBSTACLES")
-        known = message.obstacles if message else []
-        return [obstacle for obstacle in known if obstacle.shape in scene.OBSTACLE_KINDS]
+    def things(self):
+        return self.sides[0].obstacles(self.heard) + self.surroundings
 
     def load(self):
-        obstacles = self.obstacles()
-        key = [(obstacle.id, obstacle.shape, *obstacle.size) for obstacle in obstacles]
+        things = self.things()
+        key = [(thing.id, thing.shape, *thing.size) for thing in things]
         if key == self.loaded and time.monotonic() < self.load_due_s:
             return
         self.loaded, self.load_due_s = key, time.monotonic() + REPEAT_LOAD_S
-        parts = {"target": [scene.part(scene.KINDS["sphere"], [0.03], scene.TARGET)], **scene.arm_parts(self.shapes),
-                 **scene.obstacle_parts(obstacles), **scene.beads("trail", scene.TRAIL_BEADS, 0.006, scene.TRAIL),
-                 **scene.beads("guide", scene.GUIDE_BEADS, 0.012, scene.GUIDE)}
+        parts = scene.obstacle_parts(things)
+        for side in self.sides:
+            parts |= named(side, {
+                "target": [scene.part(scene.KINDS["sphere"], [0.03], scene.TARGET)], **scene.arm_parts(side.shapes),
+                **scene.beads("trail", scene.TRAIL_BEADS, 0.006, scene.TRAIL),
+                **scene.beads("guide", scene.GUIDE_BEADS, 0.012, scene.GUIDE)})
         self.heard.wire.publish("DRAKE_VIEWER_LOAD_ROBOT", scene.load_message(parts).encode())
 
-    def follow(self, tool):
-        if self.trail and np.linalg.norm(tool - self.trail[-1]) > JUMP_M:
-            self.trail.clear()
-        if not self.trail or np.linalg.norm(tool - self.trail[-1]) > TRAIL_STEP_M:
-            self.trail.append(tool)
-
-    def guide(self):
-        status = self.heard.get("CONTROLLER_STATUS")
-        return status.guide_tool if status and status.guide_horizon > 0 else []
+    def poses(self, side, trail, things):
+        """Of what is a side's own; nothing until its arm is heard."""
+        frames, target = side.frames(self.heard), side.target(self.heard)
+        if frames is None:
+            return {}
+        follow(trail, frames[-1][0])
+        return named(side, {
+            "target": scene.AWAY if target is None else (target, np.eye(3)),
+            **scene.arm_poses(side.shapes, frames, things + side.links_of_others(self.heard)),
+            **scene.bead_poses("trail", scene.TRAIL_BEADS, trail),
+            **scene.bead_poses("guide", scene.GUIDE_BEADS, side.guide(self.heard))})
 
     def draw(self):
-        state, target = self.heard.get("ARM_STATE"), self.heard.get("TARGET")
-        if state is None or state.num_joints != sum(axis is not None for _, _, axis in self.chain):
+        things, poses = self.things(), {}
+        for side, trail in zip(self.sides, self.trails):
+            poses |= self.poses(side, trail, things)
+        if not poses:
             return
-        frames = arm.frames(self.chain, state.joint_position)
-        self.follow(frames[-1][0])
-        poses = {"target": (target.position, np.eye(3)) if target else scene.AWAY}
-        poses |= scene.arm_poses(self.shapes, frames, self.obstacles())
-        poses |= scene.bead_poses("trail", scene.TRAIL_BEADS, self.trail)
-        poses |= scene.bead_poses("guide", scene.GUIDE_BEADS, self.guide())
-        for obstacle in self.obstacles():
-            poses |= scene.obstacle_poses(obstacle)
+        for thing in things:
+            poses |= scene.obstacle_poses(thing)
         self.heard.wire.publish("DRAKE_VIEWER_DRAW", scene.draw_message(poses, time.time()).encode())
 
     def run(self):
@@ -80,14 +83,33 @@ class View:
             self.draw()
 
 
+def named(side, things):
+    return {f"{side.name}{name}": thing for name, thing in things.items()}
+
+
+def follow(trail, tool):
+    if trail and np.linalg.norm(tool - trail[-1]) > JUMP_M:
+        trail.clear()
+    if not trail or np.linalg.norm(tool - trail[-1]) > TRAIL_STEP_M:
+        trail.append(tool)
+
+
+def sides_of(arguments):
+    """A side for each configuration, named after it where there are several."""
+    return [Side(config, arm.robot_of(config, arguments), f"{config.stem}::" if len(arguments.config) > 1 else "")
+            for config in arguments.config]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--config", type=Path, nargs="+", default=[arm.CONFIG],
+                        help="one for each arm; default: the LWA3's")
     arm.add_robot(parser)
     bus.add_lcm_url(parser)
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        View(arm.robot_of(arguments), arguments.lcm_url).run()
+        View(sides_of(arguments), arguments.lcm_url).run()
     except KeyboardInterrupt:
         pass
 

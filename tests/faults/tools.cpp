@@ -22,6 +22,12 @@ void spheres_of_a_csv_file_run_from_row_to_row(void**) {
 void a_drawing_is_coloured_by_the_true_clearance(void**) {
   holds("clearances");
 }
+void what_an_arm_hears_is_drawn_in_the_frame_of_all_arms(void**) {
+  holds("places");
+}
+void what_a_configuration_says_stands_there_is_drawn(void**) {
+  holds("surroundings");
+}
 void a_rotation_survives_the_way_to_a_quaternion(void**) {
   holds("quaternions");
 }
@@ -43,6 +49,8 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(spheres_of_a_csv_file_run_from_row_to_row, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_drawing_is_coloured_by_the_true_clearance, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(what_an_arm_hears_is_drawn_in_the_frame_of_all_arms, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(what_a_configuration_says_stands_there_is_drawn, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_survives_the_way_to_a_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),

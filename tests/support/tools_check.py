@@ -22,6 +22,7 @@ import geometry
 import report
 import runs
 import send_target
+import side
 
 STEP_S = 1e-4
 LWA3 = (ROOT / "urdf/lwa3.urdf", "base_link", "tool")
@@ -77,6 +78,27 @@ def quaternions():
         assert np.allclose(arm.turn_of(arm.quaternion_of(turn)), turn)
 
 
+def places():
+    """What one of two arms, its base turned by half a turn, hears in its own frame is drawn in that of both."""
+    config = ROOT / "firmware/config/left.yaml"
+    left = side.Side(config, LWA3)
+    kinds = left.channels()
+    assert kinds["LEFT_TARGET"] == "TARGET" and kinds["RIGHT_LINKS"] == "OBSTACLES", kinds
+    bar = crowds.obstacle(1, 1, [0.1, 0.5], [0.3, 0.2, 0.7], [0, 1, 0])
+    bar.quaternion = arm.quaternion_of(arm.turn_of_z(np.array([1.0, 0, 0])))
+    seen = left.in_world(bar)
+    assert np.allclose(seen.position, [-0.8, -0.2, 0.7]) and np.allclose(seen.velocity, [0, -1, 0]), seen.position
+    assert np.allclose(np.abs(arm.turn_of(seen.quaternion)[:, 2]), [1, 0, 0])
+
+
+def surroundings():
+    """The table and the wall of a configuration are drawn."""
+    table, wall = side.Side(ROOT / "firmware/config/table.yaml", LWA3).surroundings
+    assert (table.id, table.shape, wall.id) == (-2, 2, -3) and list(wall.size) == [0.05, 2.5, 2.0]
+    assert np.allclose(table.position, [-0.8, 0, 0.35])
+    assert math.isclose(geometry.distance_m(table, np.array([[-0.8, 0, 0.47]]))[0], 0.1)
+
+
 def logged_run(folder):
     """The log that the simulator keeps of a lockstep run of paper-a, and how long the run was."""
     log, scenario_file = folder / "run.lcmlog", ROOT / "host/scenarios/paper-a.yaml"
@@ -123,8 +145,8 @@ def hostile_bytes():
         assert bus.decoded(channel, whole) is not None
 
 
-CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, log_becomes_page,
-                                              log_replays, hostile_bytes)}
+CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
+                                              surroundings, log_becomes_page, log_replays, hostile_bytes)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

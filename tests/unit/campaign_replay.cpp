@@ -16,7 +16,8 @@ namespace {
 void the_simulator_reads_the_same_scene(void**) {
   for (const char* name : {"moving:11", "crowd:12", "clutter:13", "real:14", "dodge3@1:15", "dodge6d@0.5:16"}) {
     const Scene scene = scene_named(name);
-    const auto scenario = sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", scenario_yaml(scene)));
+    const auto scenario =
+        sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", scenario_yaml(scene))).front();
     check(scenario.periods == scene.periods && scenario.period_us == kPeriod_us, "%s", name);
     check_near(scenario.start_rad, scene.start_rad, 0.0);
     check(scenario.world.obstacles.size() == scene.spheres.size(), "%s", name);

@@ -45,6 +45,7 @@ void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
   Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
   Row row = row_at(1.0 / 3.0);
   row.q_rad[1] = 0.1 + 1e-17;
+  truth.place(row.q_rad);
   judge(row, truth);
   {
     CsvFile csv(file.string(), 7, 2);
@@ -57,7 +58,7 @@ void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
   check(!std::getline(in, rest), "more than two lines");
   std::filesystem::remove(file);
   const auto names = split(header), cells = split(values);
-  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 6);
+  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 7);
   assert_int_equal(cells.size(), names.size());
   const auto value = [&](const std::string& name) {
     return std::stod(cells[static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
@@ -69,6 +70,36 @@ void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
   check_near(value("clearance_m"), std::min(value("o1_clearance_m"), value("o2_clearance_m")), 0);
   check_near(value("axis_distance_m"), std::min(value("o1_axis_distance_m"), value("o2_axis_distance_m")), 0);
   check_near(value("mode"), 2, 0);
+}
+
+void surroundings_and_other_arms_are_judged_too(void**) {
+  Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
+  Row row = row_at(0);
+  row.q_rad.setZero();
+  truth.place(row.q_rad);
+  row.world.obstacles.clear();
+  Obstacle ball;
+  ball.id = -2;
+  ball.solid.size_m.x() = 0.05;
+  ball.motion.position_m = truth.tool_m();
+  row.world.surroundings = {ball};
+  row.neighbour_m = 0.1;
+  judge(row, truth);
+  assert_true(row.nearest.clearance_m < 0.0);
+  Summary summary(10'000);
+  summary.add(row);
+  check(summary.text({}).find("obstacle -2") != std::string::npos, "%s", summary.text({}).c_str());
+
+  row.world.surroundings.clear();
+  row.neighbour_m = -0.01;
+  judge(row, truth);
+  Summary beside(10'000);
+  beside.add(row);
+  Expectations expect;
+  expect.clearance_min_m = 0;
+  assert_int_equal(beside.broken(expect).size(), 1);
+  for (const char* part : {"contact                   YES", "to arms     -0.0100 m"})
+    check(beside.text({}).find(part) != std::string::npos, "no '%s'", part);
 }
 
 void a_csv_file_that_cannot_be_written_is_an_error_in_one_line(void**) {
@@ -141,6 +172,7 @@ void the_summary_names_what_came_closest(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_csv_row_has_a_value_for_every_column_and_loses_no_bit),
+      cmocka_unit_test(surroundings_and_other_arms_are_judged_too),
       cmocka_unit_test(a_csv_file_that_cannot_be_written_is_an_error_in_one_line),
       cmocka_unit_test(expectations_are_judged_over_the_whole_run),
       cmocka_unit_test(a_run_without_figures_keeps_no_expectation),

@@ -1,4 +1,4 @@
-#include "host/sim/run.h"
+#include "host/sim/play.h"
 
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ std::string url() {
 }
 
 Scenario scenario_of(double duration_s) {
-  Scenario scenario = load_scenario("host/scenarios/paper-c.yaml");
+  Scenario scenario = load_scenario("host/scenarios/paper-c.yaml").front();
   scenario.periods = static_cast<int>(std::lround(duration_s * 100));
   return scenario;
 }
@@ -119,13 +119,12 @@ struct Played {
 
 Played play(const Scenario& scenario, bool lockstep, double patience_s = 5, const std::string& csv_file = "",
             const std::atomic<bool>& interrupted = kNotInterrupted) {
-  Truth truth(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip));
-  Bus bus(url(), "");
-  Live live(true, lockstep);
-  std::optional<CsvFile> csv;
-  if (!csv_file.empty()) csv.emplace(csv_file, 7, 3);
-  Run run(scenario, truth, live, csv ? &*csv : nullptr);
-  const End end = (lockstep ? run_lockstep : run_realtime)(run, bus, patience_s, interrupted);
+  Bus bus(url(), "", {scenario.channels});
+  std::vector<Run> runs;
+  runs.emplace_back(scenario, csv_file);
+  Play all(std::move(runs), Live(true, lockstep));
+  const End end = (lockstep ? run_lockstep : run_realtime)(all, bus, patience_s, interrupted);
+  const Run& run = all.runs.front();
   return {end, run.summary().rows(), run.plant.q_rad(), run.plant.refused(), bus.malformed(), run.waits_for()};
 }
 

@@ -38,7 +38,7 @@ Scenario load(const std::string& text, const std::string& name = "a.yaml") {
     std::filesystem::path folder;
     ~Cleanup() { std::filesystem::remove_all(folder); }
   } const cleanup{folder};
-  return load_scenario((folder / name).string());
+  return load_scenario((folder / name).string()).front();
 }
 
 std::string changed(const std::string& from, const std::string& to) {
@@ -226,18 +226,48 @@ void files_that_are_no_scenario_are_refused_in_one_line(void**) {
   assert_true(one_line_with(message_of([] { load_scenario("host"); }), {"host: "}));
 }
 
+/// In the scenario: the left arm's base at x = -0.5 m, turned by pi, the right one's at 0.5 m.
+void each_of_several_arms_sees_the_world_from_its_base(void**) {
+  const std::vector<Scenario> arms = load_scenario("host/scenarios/two-arms.yaml");
+  assert_int_equal(arms.size(), 2);
+  const Scenario &left = arms[0], &right = arms[1];
+  assert_string_equal(left.arm.c_str(), "left");
+  assert_string_equal(left.channels.arm_state.c_str(), "LEFT_ARM_STATE");
+  assert_string_equal(right.channels.controller_status.c_str(), "RIGHT_CONTROLLER_STATUS");
+  check_near(left.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
+  check_near(right.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
+  check_near(later(left.world, 3).target.motion.position_m, Vector3d(-0.55, 0.35, 0.75), 1e-15);
+  check_near(left.world.obstacles[0].motion.velocity_mps, Vector3d(0, -0.2, 0), 1e-15);
+  check_near(right.world.obstacles[0].motion.velocity_mps, Vector3d(0, 0.2, 0), 1e-15);
+  const Vector3d axis = left.world.obstacles[1].motion.orientation * Vector3d::UnitZ();
+  check_near(axis, Vector3d(-1, 0, 0), 1e-6);
+}
+
+void what_the_configuration_says_stands_there_is_part_of_the_world(void**) {
+  const World world = load_scenario("host/scenarios/table.yaml").front().world;
+  assert_int_equal(world.obstacles.size(), 2);
+  assert_int_equal(world.surroundings.size(), 2);
+  const Obstacle& wall = world.surroundings[1];
+  assert_int_equal(wall.id, -3);
+  assert_true(wall.solid.shape == Shape::kBox);
+  check_near(wall.solid.size_m, Vector3d(0.05, 2.5, 2.0), 0);
+  check_near(wall.motion.position_m, Vector3d(0.6, 0, 1.0), 0);
+  assert_int_equal(world.all()[3].id, -3);
+}
+
 void the_rate_is_100_hz_unless_said_otherwise(void**) {
   assert_int_equal(load(changed("rate_hz: 200\n", "")).period_us, 10'000);
 }
 
 void the_urdf_is_found_from_the_folder_of_the_scenario_upwards(void**) {
-  const Scenario s = load_scenario("host/scenarios/paper-a.yaml");
+  const Scenario s = load_scenario("host/scenarios/paper-a.yaml").front();
   assert_true(std::filesystem::equivalent(s.robot.urdf_file, "urdf/lwa3.urdf"));
 }
 
 void the_three_scenarios_of_the_paper(void**) {
-  const Scenario a = load_scenario("host/scenarios/paper-a.yaml"), b = load_scenario("host/scenarios/paper-b.yaml"),
-                 c = load_scenario("host/scenarios/paper-c.yaml");
+  const Scenario a = load_scenario("host/scenarios/paper-a.yaml").front(),
+                 b = load_scenario("host/scenarios/paper-b.yaml").front(),
+                 c = load_scenario("host/scenarios/paper-c.yaml").front();
   check_near(a.duration_s(), 2.3, 0);
   check_near(b.duration_s(), 8, 0);
   check_near(c.duration_s(), 2.8, 0);
@@ -268,6 +298,8 @@ int main() {
       cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
       cmocka_unit_test(every_mistake_is_one_line_naming_file_and_key),
       cmocka_unit_test(files_that_are_no_scenario_are_refused_in_one_line),
+      cmocka_unit_test(each_of_several_arms_sees_the_world_from_its_base),
+      cmocka_unit_test(what_the_configuration_says_stands_there_is_part_of_the_world),
       cmocka_unit_test(the_rate_is_100_hz_unless_said_otherwise),
       cmocka_unit_test(the_urdf_is_found_from_the_folder_of_the_scenario_upwards),
       cmocka_unit_test(the_three_scenarios_of_the_paper),

@@ -160,10 +160,28 @@ void without_obstacles_nothing_is_near(void**) {
   check_near(truth.axis_distance_m(std::vector<Obstacle>{}), kNothingNear, 0);
 }
 
+void links_are_where_another_arm_meets_them(void**) {
+  Truth truth = lwa3(), other = lwa3();
+  const auto apart_m = [&](double x_m) {
+    Eigen::Isometry3d base_from_other = Eigen::Isometry3d::Identity();
+    base_from_other.translation().x() = x_m;
+    return truth.nearest(other.links(base_from_other)).clearance_m;
+  };
+  for (const double q_rad : {0.0, 0.7}) {  // all alike: they are shifted copies
+    truth.place(JointVector::Constant(7, q_rad));
+    other.place(JointVector::Constant(7, q_rad));
+    assert_true(apart_m(0.0) < 0.0);
+    const double far_m = apart_m(3.0);
+    assert_true(far_m > 0.0);
+    check(apart_m(3.5) > far_m && apart_m(3.5) <= far_m + 0.5 + 1e-9, "%g m", apart_m(3.5));
+  }
+}
+
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
+      cmocka_unit_test(links_are_where_another_arm_meets_them),
       cmocka_unit_test(home_puts_the_tool_where_the_paper_says),
       cmocka_unit_test(the_tool_agrees_with_the_table_of_the_paper_in_random_poses),
       cmocka_unit_test(home_is_0_2490_m_from_the_third_obstacle),

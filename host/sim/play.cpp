@@ -1,0 +1,35 @@
+#include "host/sim/play.h"
+
+#include <algorithm>
+
+namespace sidestep::sim {
+namespace {
+
+bool tracks(const Run& run) {
+  return run.status() && run.status()->mode == Mode::kTrack;
+}
+
+}  // namespace
+
+bool Play::answered() const {
+  return std::all_of(runs.begin(), runs.end(), [](const Run& run) { return run.status().has_value(); });
+}
+
+bool Play::tracking() const {
+  return std::all_of(runs.begin(), runs.end(), tracks);
+}
+
+void Play::record() {
+  std::vector<const Row*> rows;
+  for (Run& run : runs) {
+    run.record(runs);
+    rows.push_back(&run.row());
+  }
+  live_.running(rows, scenario().duration_s());
+}
+
+std::string Play::waits_for() const {
+  return std::find_if_not(runs.begin(), runs.end() - 1, tracks)->waits_for();
+}
+
+}  // namespace sidestep::sim
