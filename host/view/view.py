@@ -35,6 +35,8 @@ class View:
         self.heard = bus.Newest({name: kind for side in sides for name, kind in side.channels().items()}, lcm_url)
         self.trails = [deque(maxlen=scene.TRAIL_BEADS) for _ in sides]
         self.surroundings = [thing for side in sides for thing in side.surroundings]
+        for i, thing in enumerate(self.surroundings):
+            thing.id = -2 - i  # of several arms: no two alike
         self.loaded, self.load_due_s = None, 0.0
 
     def things(self):
