@@ -6,12 +6,16 @@
 #include "tests/support/lwa3.h"
 #include "tests/support/process.h"
 #include "tests/support/random.h"
+#include "tests/support/replay.h"
 #include "tests/support/scratch.h"
 
 using namespace sidestep;
+using test::agreed;
 using test::LiveArm;
 using test::one_line_with;
 using test::Process;
+using test::Replay;
+using test::replay;
 
 namespace {
 
@@ -73,31 +77,9 @@ struct Scene {
   }
 };
 
-struct Replay {
-  int code;
-  std::string output;
-};
-
-Replay replay(const std::string& log, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"build/replay", log};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  Process process(arguments);
-  const int code = process.wait(20.0);
-  return {code, process.output()};
-}
-
 std::string last_line(const std::string& text) {
   const std::string whole = text.substr(0, text.find_last_not_of('\n') + 1);
   return whole.substr(whole.rfind('\n') + 1);
-}
-
-/// Cycles that agree, as the replay says it.
-int agreed(const std::string& log) {
-  const Replay said = replay(log);
-  check(said.code == 0 && said.output.find("all agree bit for bit") != std::string::npos, "code %d: %s", said.code,
-        said.output.c_str());
-  print_message("%s", said.output.c_str());
-  return std::atoi(said.output.c_str());
 }
 
 void a_fault_leaves_a_log_that_replays_bit_for_bit(void**) {

@@ -1,0 +1,36 @@
+#include "tests/support/replay.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+
+namespace sidestep::test {
+
+Replay replay(const std::string& log, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"build/replay", log};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  Process process(arguments);
+  const int code = process.wait(60.0);
+  return {code, process.output()};
+}
+
+int agreed(const std::string& log) {
+  const Replay said = replay(log);
+  check(said.code == 0 && said.output.find("all agree bit for bit") != std::string::npos, "code %d: %s", said.code,
+        said.output.c_str());
+  print_message("%s", said.output.c_str());
+  return std::atoi(said.output.c_str());
+}
+
+std::vector<std::string> logs_in(const std::string& folder) {
+  std::vector<std::string> files;
+  if (std::filesystem::exists(folder))
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".lcmlog") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace sidestep::test
