@@ -85,7 +85,7 @@ void an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself(void**) {
   const Model model = test::lwa3_model("sidestep");
   const auto nothing = std::make_unique<ObstacleSet>();
   const ObstacleView view{nothing.get(), 0.0, 0.0};
-  const Clearance clearance;
+  const Clearance clearance{};
   Random random(1);
   int met = 0;
   for (int trial = 0; trial < 60; ++trial) {
