@@ -175,6 +175,9 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)
 	@echo "c++ $<"
 	@$(CXX) $(CXXFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
+# These need cmocka, which the programs do not.
+$(SUPPORT) $(TESTS:$(BUILD)/%=$(BUILD)/obj/%.o): | $(READY).test
+
 $(BUILD)/libfirmware.a: $(FIRMWARE)
 $(BUILD)/libsim.a: $(SIM)
 $(BUILD)/libcampaign.a: $(CAMPAIGN)
