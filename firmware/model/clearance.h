@@ -35,7 +35,8 @@ struct ObstacleView {
   int reported() const { return set ? set->count : 0; }
   int count() const { return reported() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }
   const Obstacle& at(int index) const {
-    return index < reported() ? set->obstacles[index] : (*surroundings)[index - reported()];
+    if (index < reported()) return set->obstacles[index];
+    return (*surroundings)[index - reported()];
   }
   double growth_of(int index) const { return index < reported() ? growth_m : 0.0; }
   /// Where it is later_s from now, and grown.

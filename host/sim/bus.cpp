@@ -131,7 +131,8 @@ struct Bus::Wire {
     if (!log_file.empty()) log = std::make_unique<lcm::LogFile>(log_file, "w");
     if (log && !log->good()) throw std::runtime_error(log_file + ": cannot be written");
     for (size_t arm = 0; arm < channels.size(); ++arm) {
-      Ear& ear = ears.emplace_back(Ear{this, arm});
+      ears.push_back({this, arm});
+      Ear& ear = ears.back();
       // A full queue refuses the newest message; this one holds 10 s and is emptied all the time.
       lcm.subscribe(channels[arm].arm_command, &Ear::take_command, &ear)->setQueueCapacity(1000);
       lcm.subscribe(channels[arm].controller_status, &Ear::take_status, &ear)->setQueueCapacity(1000);
