@@ -40,6 +40,8 @@ void Foresight::judge(const Snapshot& now) {
 
 void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) {
+    // Both from now: a coarse future that only grazes an obstacle may change its mind from one cycle to the next.
+    expected_ = rollout_.run(now, guide_);
     const Forecast forecast = rollout_.run(now, candidate_);
     if (forecast.cost_s < expected_.cost_s - kBetter_s) take(candidate_, forecast);
     candidate_ = Guide{};

@@ -18,13 +18,14 @@ Outcome play(const char* family_name, uint64_t seed, bool foresees) {
   return run_trial(make_scene(family, seed), *pilot);
 }
 
-/// Scenes in which earlier versions of the shield dithered between two sides until it was too late.
+/// Scenes in which earlier versions of the shield dithered between two sides until it was too late, and one (the last)
+/// in which foresight took a guide for two cycles because the straight future grazed an obstacle in one cycle of three.
 void nothing_is_hit_where_it_once_was(void**) {
   const struct {
     const char* family;
     uint64_t seed;
-  } scenes[] = {{"dodge@0.5", 1000318}, {"dodge@0.5", 1000520}, {"dodge@0.5", 1000937},
-                {"dodge@1", 1000705},   {"dodge@1", 1000711},   {"erratic", 1000196}};
+  } scenes[] = {{"dodge@0.5", 1000318}, {"dodge@0.5", 1000520}, {"dodge@0.5", 1000937}, {"dodge@1", 1000705},
+                {"dodge@1", 1000711},   {"erratic", 1000196},   {"dodge@1", 1000447}};
   for (const auto& scene : scenes) {
     for (const bool foresees : {false, true}) {
       const Outcome outcome = play(scene.family, scene.seed, foresees);
