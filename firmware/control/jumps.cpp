@@ -6,7 +6,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kNoise_m = 0.05;  // what a measurement may be wrong by
+constexpr double kNoise_m = 0.05;     // what a measurement may be wrong by
+constexpr double kRounding_s = 1e-6;  // of times that are a whole number of periods apart
 
 /// How far the ends of the axis have moved, or the sides of a box turned; which is which does not matter.
 double displacement_m(const Obstacle& before, const Obstacle& now) {
@@ -58,7 +59,7 @@ void Jumps::complete(ObstacleSet& set, double elapsed_s, double now_s) {
 
   for (const OldPlace& place : places_) {
     // A time too far ahead is of a clock that has been set back.
-    const bool counts = place.until_s > now_s && place.until_s <= now_s + memory_s_;
+    const bool counts = place.until_s > now_s + kRounding_s && place.until_s <= now_s + memory_s_;
     if (counts && set.count < kMaxObstacles) set.obstacles[set.count++] = place.obstacle;
   }
 }

@@ -25,7 +25,8 @@ size_t ring_bytes(const Config& config) {
   const double cycles_per_s = config.model.settings.rate_hz;
   const double bytes_per_s = cycles_per_s * static_cast<double>(sizeof(KeptCycle) + kOtherMessages_bytes) +
                              kUsualSets_hz * kUsualObstacles * kObstacle_bytes;
-  return static_cast<size_t>(config.blackbox.seconds * bytes_per_s) + 4 * kObstacle_bytes * kMaxObstacles;
+  const double seconds = config.blackbox.seconds + config.model.settings.ages.old_place_s;
+  return static_cast<size_t>(seconds * bytes_per_s) + 4 * kObstacle_bytes * kMaxObstacles;
 }
 
 bool is_log(const fs::path& file) {

@@ -35,6 +35,7 @@ void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
     }
     KeptCycle cycle;
     std::memcpy(static_cast<void*>(&cycle), record.bytes, sizeof cycle);
+    if (cycle.report.guide) cycle.report.guide = &cycle.moment.guide;  // it pointed to where the cycle was made
     const Inputs& inputs = cycle.moment.inputs;
     if (cycle.moment.now_s < since_s || lacks(inputs.arm, Kept::kArmState) || lacks(inputs.target, Kept::kTarget) ||
         lacks(inputs.obstacles, Kept::kObstacles))
@@ -61,15 +62,11 @@ class Log {
     if (log_.writeEvent(&event) != 0) give_up();
   }
 
-  void write(const std::string& channel, double at_s, const Record& record) {
-    if (record.bytes) write(channel, at_s, Packet{record.bytes, record.size});
-  }
-
   void write(const KeptCycle& cycle, const Messages& messages) {
     const Moment& moment = cycle.moment;
-    write(channels_.arm_state, moment.inputs.arm.received_s, messages[0]);
-    write(channels_.target, moment.inputs.target.received_s, messages[1]);
-    write(channels_.obstacles, moment.inputs.obstacles.received_s, messages[2]);
+    write_new(channels_.arm_state, moment.inputs.arm, messages, Kept::kArmState);
+    write_new(channels_.target, moment.inputs.target, messages, Kept::kTarget);
+    write_new(channels_.obstacles, moment.inputs.obstacles, messages, Kept::kObstacles);
     MomentImage image;
     to_image(moment, image);
     write(kMomentChannel, moment.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
@@ -83,6 +80,15 @@ class Log {
   }
 
  private:
+  /// A message that is long in use stands in the ring again and again, in the log once.
+  template <typename Message>
+  void write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, Kept kind) {
+    const auto k = static_cast<size_t>(kind);
+    if (latest.count == written_[k]) return;
+    written_[k] = latest.count;
+    write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
+  }
+
   [[noreturn]] void give_up() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
 
   std::string file_;
@@ -90,6 +96,7 @@ class Log {
   Channels channels_;
   Encoder encoder_;
   double epoch_s_;
+  std::array<int64_t, kMessageKinds> written_{};  ///< counts of the messages last written
 };
 
 std::vector<uint8_t> header(const Config& config, const std::string& reason, int64_t utime, int64_t cycles) {
@@ -115,7 +122,7 @@ int64_t write_blackbox_log(const std::string& file, const Config& config, const 
                            RecordRing::Copy& records) {
   Moment newest;
   for_each_cycle(records, -HUGE_VAL, [&](const KeptCycle& cycle, const Messages&) { newest = cycle.moment; });
-  const double since_s = newest.now_s - config.blackbox.seconds;
+  const double since_s = newest.now_s - config.blackbox.seconds - config.model.settings.ages.old_place_s;
   int64_t cycles = 0;
   for_each_cycle(records, since_s, [&](const KeptCycle&, const Messages&) { ++cycles; });
 

@@ -25,9 +25,9 @@ struct KeptCycle {
 constexpr const char* kBlackboxChannel = "BLACKBOX";
 constexpr const char* kMomentChannel = "BLACKBOX_CYCLE";
 
-/// Writes the last Config::blackbox.seconds of the records as an lcm-logger log and returns the number of cycles. It
-/// begins with the first cycle all of whose messages are there. Throws std::runtime_error, one line, when the file
-/// cannot be written.
+/// Writes the last Config::blackbox.seconds of the records, and Ages::old_place_s before them to lead in, as an
+/// lcm-logger log and returns the number of cycles. It begins with the first cycle all of whose messages are there.
+/// Throws std::runtime_error, one line, when the file cannot be written.
 int64_t write_blackbox_log(const std::string& file, const Config& config, const std::string& reason,
                            RecordRing::Copy& records);
 

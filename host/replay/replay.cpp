@@ -22,11 +22,12 @@ Bytes bytes_of(const lcm::LogEvent& event) {
   return Bytes(first, first + event.datalen);
 }
 
-/// The latest message on a channel, if there was any.
+/// The latest message on a channel, if there was any, and the bytes of the next.
 template <typename Message>
 struct Held {
   Message message;
   bool any = false;
+  Bytes next;
 };
 
 /// The cycles of a log, run again one by one.
@@ -41,9 +42,9 @@ class Rerun {
   /// Returns what is wrong with the event, or "".
   std::string take(const lcm::LogEvent& event) {
     const Channels& channels = config_.channels;
-    if (event.channel == channels.arm_state) return hold(event, arm_);
-    if (event.channel == channels.target) return hold(event, target_);
-    if (event.channel == channels.obstacles) return hold(event, *obstacles_);
+    if (event.channel == channels.arm_state) arm_.next = bytes_of(event);
+    if (event.channel == channels.target) target_.next = bytes_of(event);
+    if (event.channel == channels.obstacles) obstacles_->next = bytes_of(event);
     if (event.channel == kMomentChannel) return cycle(event);
     if (event.channel == channels.arm_command) compare(bytes_of(event));
     return "";
@@ -55,23 +56,19 @@ class Rerun {
   }
 
  private:
-  /// The log holds what was admitted, and when; so it is admitted again.
-  template <typename Message>
-  std::string hold(const lcm::LogEvent& event, Held<Message>& held) {
-    const double received_s = static_cast<double>(event.timestamp) * 1e-6;
-    held.any = admission_.admit(event.data, static_cast<size_t>(event.datalen), received_s, held.message);
-    return held.any ? "" : fmt::format("not admitted: {}", admission_.last_reason());
-  }
-
   std::string cycle(const lcm::LogEvent& event) {
     if (expected_) count_difference();
     Moment moment;
     if (!from_image(event.data, static_cast<size_t>(event.datalen), moment)) return "a cycle with a wrong checksum";
     Inputs& inputs = moment.inputs;
     if (!put(arm_, inputs.arm) || !put(target_, inputs.target) || !put(*obstacles_, inputs.obstacles))
-      return "a cycle whose messages are missing";
+      return "a cycle whose messages are missing or not admitted";
     if (inputs.guide) inputs.guide = &moment.guide;
-    if (found_.cycles++ == 0) state_ = moment.state;
+    if (found_.cycles++ == 0) lead_in_ends_s_ = lead_in_ends_s(moment);
+    leading_in_ = moment.now_s < lead_in_ends_s_;
+    if (leading_in_ || !chained_) state_ = moment.state;
+    chained_ = !leading_in_;
+    found_.led_in += leading_in_;
     const Result result = step(config_.model, state_, inputs, moment.now_s);
     state_ = result.next;
     seq_ = moment.seq;
@@ -80,18 +77,28 @@ class Rerun {
     if (result.command.position_rad.size() == 0) return "";
     const Packet packet = encoder_.encode(result.command, moment.utime, moment.seq);
     answer_ = Bytes(packet.bytes, packet.bytes + packet.size);
-    if (result.commanding) expected_ = answer_;
+    if (result.commanding && !leading_in_) expected_ = answer_;
     return "";
   }
 
+  /// Old places of obstacles that jumped before the log are not in it, unless it goes back to the start.
+  double lead_in_ends_s(const Moment& first) const {
+    return first.seq == 1 ? first.now_s : first.now_s + config_.model.settings.ages.old_place_s;
+  }
+
+  /// The log holds what was admitted; it is admitted again as having been received when it was, to the last bit.
   template <typename Message>
-  static bool put(const Held<Message>& held, Latest<Message>& latest) {
+  bool put(Held<Message>& held, Latest<Message>& latest) {
     if (!latest.message) return true;
+    if (!held.next.empty())
+      held.any = admission_.admit(held.next.data(), held.next.size(), latest.received_s, held.message);
+    held.next.clear();
     latest.message = &held.message;
     return held.any;
   }
 
   void compare(const Bytes& command) {
+    if (leading_in_) return;
     ++found_.commands;
     if (command != answer_) count_difference();
     expected_.reset();
@@ -109,6 +116,8 @@ class Rerun {
   std::unique_ptr<Held<ObstacleSet>> obstacles_;
   State state_;
   int64_t seq_ = 0;
+  double lead_in_ends_s_ = 0.0;
+  bool leading_in_ = false, chained_ = false;
   Bytes answer_;                   ///< the command of the cycle last run
   std::optional<Bytes> expected_;  ///< the same, while the log has yet to show it
   Comparison found_;
