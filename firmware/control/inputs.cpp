@@ -42,7 +42,8 @@ bool plausible(const Obstacle& obstacle) {
 bool Order::accept(int64_t utime, double now_s, double restart_s) {
   const bool silent = std::abs(now_s - accepted_s_) > restart_s;  // or the clock was set back
   const bool went_back = static_cast<double>(utime_) - static_cast<double>(utime) > restart_s * 1e6;
-  if (any_ && utime <= utime_ && !silent && !went_back) return false;
+  const bool newer = utime > utime_, anew = utime < utime_ && (silent || went_back);
+  if (any_ && !newer && !anew) return false;
   const double by_sender_s = 1e-6 * (static_cast<double>(utime) - static_cast<double>(utime_));
   elapsed_s_ = any_ ? std::max(std::abs(now_s - accepted_s_), by_sender_s) : 0.0;
   any_ = true;

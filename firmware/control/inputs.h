@@ -24,8 +24,9 @@ struct Latest {
 /// Decides by its utime whether a message is newer than all before it on its channel.
 class Order {
  public:
-  /// Accepts a newer utime. An older or repeated one is dropped unless its sender has evidently started anew: it is
-  /// older by more than `restart_s`, or nothing was accepted for `restart_s` (local receipt times, s).
+  /// Accepts a newer utime. An older one is dropped unless its sender has evidently started anew: it is older by more
+  /// than `restart_s`, or nothing was accepted for `restart_s` (local receipt times, s). A repeated one is always
+  /// dropped: a sender that has frozen says nothing new.
   bool accept(int64_t utime, double now_s, double restart_s);
 
   /// From the message accepted before the last to the last, s, by their receipt or by their sender's clock, whichever

@@ -121,6 +121,7 @@ void only_newer_messages_are_accepted(void**) {
   assert_true(order.accept(1000, 1.000, 0.1));
   assert_false(order.accept(1000, 1.001, 0.1));
   assert_false(order.accept(999, 1.002, 0.1));
+  assert_false(Order(order).accept(1000, 2.000, 0.1));  // its sender has frozen
   assert_true(order.accept(1001, 1.003, 0.1));
   assert_true(order.accept(900000000, 1.004, 0.1));
 }
