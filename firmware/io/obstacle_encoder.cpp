@@ -11,18 +11,29 @@ void copy(const Vector3& from, double* to) {
   Eigen::Map<Vector3>(to, 3) = from;
 }
 
-obstacle_t to_message(const Obstacle& obstacle) {
-  const Capsule& capsule = obstacle.capsule;
-  const Vector3 axis = capsule.end - capsule.start;
-  const bool round = axis.isZero(0.0);
-  const Quaternion turn = round ? Quaternion::Identity() : Quaternion::FromTwoVectors(Vector3::UnitZ(), axis);
-  obstacle_t message;
-  message.id = obstacle.id;
-  message.shape = round ? obstacle_t::SPHERE : obstacle_t::CAPSULE;
-  copy(0.5 * (capsule.start + capsule.end), message.position);
+void say_shape(int8_t shape, const Quaternion& turn, const Vector3& size_m, obstacle_t& message) {
+  message.shape = shape;
   const double wxyz[] = {turn.w(), turn.x(), turn.y(), turn.z()};
   std::copy(wxyz, wxyz + 4, message.quaternion);
-  copy({capsule.radius_m, axis.norm(), 0.0}, message.size);
+  copy(size_m, message.size);
+}
+
+void say_shape(const Obstacle& obstacle, obstacle_t& message) {
+  if (obstacle.is_box()) {
+    const Box box = box_of(obstacle);
+    return say_shape(obstacle_t::BOX, Quaternion(box.axes), 2.0 * box.half_m, message);
+  }
+  const Capsule& capsule = obstacle.capsule;
+  const Vector3 axis = capsule.end - capsule.start, size_m(capsule.radius_m, axis.norm(), 0.0);
+  if (axis.isZero(0.0)) return say_shape(obstacle_t::SPHERE, Quaternion::Identity(), size_m, message);
+  say_shape(obstacle_t::CAPSULE, Quaternion::FromTwoVectors(Vector3::UnitZ(), axis), size_m, message);
+}
+
+obstacle_t to_message(const Obstacle& obstacle) {
+  obstacle_t message;
+  message.id = obstacle.id;
+  say_shape(obstacle, message);
+  copy(obstacle.capsule.centre(), message.position);
   copy(obstacle.velocity_mps, message.velocity);
   copy(obstacle.angular_velocity_radps, message.angular_velocity);
   return message;

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Obstacles to the bytes of an obstacles_t, as spheres and capsules. Does not allocate.
+/// Obstacles to the bytes of an obstacles_t. Does not allocate.
 class ObstacleEncoder {
  public:
   explicit ObstacleEncoder(int most_obstacles);

@@ -95,6 +95,38 @@ void links_arrive_in_the_base_frame_of_who_listens(void**) {
   }
 }
 
+/// However they lie and turn: none gets fatter on its way.
+void all_shapes_arrive_as_they_are(void**) {
+  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+  test::Random random(3);
+  for (int trial = 1; trial <= 100; ++trial) {
+    std::vector<obstacle_t> all(3);
+    for (int8_t shape = 0; shape < 3; ++shape) {
+      obstacle_t& each = all[static_cast<size_t>(shape)];
+      each = sphere(shape, random.inside(-1, 1), 0, random.inside(-1, 1));
+      each.shape = shape;
+      const Quaternion turn = random.turn();
+      const double wxyz[] = {turn.w(), turn.x(), turn.y(), turn.z()};
+      std::copy(wxyz, wxyz + 4, each.quaternion);
+      for (double& size : each.size) size = random.uniform(0.05, 0.8);
+    }
+    const Bytes bytes = encoded(obstacles_message(trial, all));
+    const auto as_it_is = std::make_unique<ObstacleSet>();
+    Admission gate(7, config_at(pose({0, 0, 0}, 0), {}).model.settings);
+    assert_true(gate.admit(bytes.data(), bytes.size(), 0.01 * trial, *as_it_is));
+    listener.hear(1, encoded(obstacles_message(trial, {})), 0.01 * trial);
+    assert_true(listener.hear(0, bytes, 0.01 * trial));
+    for (size_t i = 0; i < 3; ++i) {
+      const Obstacle &sent = as_it_is->obstacles[i], &heard = listener.set->obstacles[i];
+      check_near(heard.capsule.start, sent.capsule.start, 1e-12);
+      check_near(heard.capsule.end, sent.capsule.end, 1e-12);
+      check_near(heard.capsule.radius_m, sent.capsule.radius_m, 1e-12);
+      check_near(heard.half_width_m, sent.half_width_m, 1e-12);
+      check_near(heard.half_height_m, sent.half_height_m, 1e-12);
+    }
+  }
+}
+
 /// The ball moves at 1 m/s: what is heard later is moved back, so that the whole is true at its own time.
 void a_whole_is_as_old_as_its_oldest_part(void**) {
   Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
@@ -170,6 +202,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(links_move_as_finite_differences_say),
       cmocka_unit_test(links_arrive_in_the_base_frame_of_who_listens),
+      cmocka_unit_test(all_shapes_arrive_as_they_are),
       cmocka_unit_test(a_whole_is_as_old_as_its_oldest_part),
       cmocka_unit_test(a_bad_message_of_a_neighbour_leaves_the_others_alone),
       cmocka_unit_test(more_obstacles_than_a_message_holds_are_no_whole),
