@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "firmware/io/adviser.h"
 #include "firmware/io/config.h"
@@ -58,13 +59,17 @@ Controller::Result result_of(const sidestep::Result& from) {
           report.target_distance_m,
           report.clearance_m,
           report.nearest_obstacle,
-          report.outlook == Outlook::kGuided,
+          report.guide != nullptr,
           array(report.tool_position_m),
           array(report.tool_velocity_mps)};
 }
 
 Model model_of(const std::string& config_file, const Overrides& overrides, Controller::Foresight foresight) {
-  Model model = load_config(config_file, overrides).model;
+  const Config config = load_config(config_file, overrides);
+  if (!config.neighbours.listen.empty())
+    throw std::runtime_error(config_file + ": neighbours.listen: this process hears no channels; put the neighbours' "
+                                           "links among the obstacles");
+  Model model = config.model;
   if (foresight == Controller::Foresight::kOff) model.settings.foresight.enabled = false;
   return model;
 }

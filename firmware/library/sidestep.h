@@ -31,7 +31,8 @@ class __attribute__((visibility("default"))) Controller {
   /// does the same in every run. The configuration may switch it off as well.
   enum class Foresight { kOnThread, kWithinStep, kOff };
 
-  /// What sidestep-controller takes as --config. Throws std::runtime_error, one line, naming the file and the key.
+  /// What sidestep-controller takes as --config. Throws std::runtime_error, one line, naming the file and the key; also
+  /// for one that listens to neighbours, whose links belong among the obstacles here.
   explicit Controller(const std::string& config_file, Foresight foresight = Foresight::kOnThread);
   /// The arm between two links of a URDF, all else default.
   Controller(const std::string& urdf, const std::string& base, const std::string& tip,

@@ -7,6 +7,8 @@
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep;
 
@@ -89,12 +91,16 @@ void all_three_shapes_keep_their_distance(void**) {
 void a_pose_is_tracked(void**) {
   Loop loop;
   loop.target.tracks_orientation = true;
-  loop.target.orientation = {std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0};
-  loop.run(1.0);
-  const Controller::Joints by_pose = loop.arm.position_rad;
-  Loop free;
-  free.run(1.0);
-  check(by_pose != free.arm.position_rad, "the orientation makes no difference");
+  const JointVector there_rad = test::home_rad() + JointVector::Constant(7, 0.2);
+  const Posture there = forward(test::lwa3(), there_rad);
+  const Quaternion turn(there.tool_rotation);
+  std::copy_n(there.tool_position.data(), 3, loop.target.position_m.begin());
+  loop.target.orientation = {turn.w(), turn.x(), turn.y(), turn.z()};
+  loop.run(4.0);
+  const JointVector q_rad = Eigen::Map<const JointVector>(loop.arm.position_rad.data(), 7);
+  const Matrix3 turned = forward(test::lwa3(), q_rad).tool_rotation;
+  const double off_rad = Quaternion(turned).angularDistance(turn);
+  check(off_rad < 1e-2 && loop.last.target_distance_m < 1e-3, "%g rad, %g m", off_rad, loop.last.target_distance_m);
 }
 
 void what_cannot_be_true_is_refused_and_the_last_counts(void**) {
@@ -116,6 +122,13 @@ void what_cannot_be_true_is_refused_and_the_last_counts(void**) {
   assert_true(loop.controller.set_obstacles(nullptr, 0, loop.now_s));
   loop.run(1.0);
   check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
+}
+
+void neighbours_that_it_could_not_hear_are_refused(void**) {
+  const std::string text = test::replaced(test::text_of(kConfig), "listen: []", "listen: [LINKS_2]");
+  const std::string file = test::scratch_file("neighbours.yaml", text);
+  const std::string said = test::message_of([&] { Controller(file, Controller::Foresight::kOff); });
+  check(test::one_line_with(said, {file.c_str(), "neighbours.listen"}), "'%s'", said.c_str());
 }
 
 void without_obstacle_sets_it_brakes_and_says_so(void**) {
@@ -170,6 +183,7 @@ int main() {
       cmocka_unit_test(all_three_shapes_keep_their_distance),
       cmocka_unit_test(a_pose_is_tracked),
       cmocka_unit_test(what_cannot_be_true_is_refused_and_the_last_counts),
+      cmocka_unit_test(neighbours_that_it_could_not_hear_are_refused),
       cmocka_unit_test(without_obstacle_sets_it_brakes_and_says_so),
       cmocka_unit_test(a_step_without_an_arm_state_is_bridged_and_many_are_a_fault),
       cmocka_unit_test(asked_to_stop_it_comes_to_rest),
