@@ -38,7 +38,7 @@ class Lockstep {
       if (runner_.timing().cycles != cycles || !stop_) last_cycle_s = monotonic_s();
       if (monotonic_s() - last_cycle_s > kFarewell_s) break;
     }
-    return {runner_.timing(), rejected()};
+    return {runner_.timing(), rejected_};
   }
 
  private:
@@ -63,7 +63,9 @@ class Lockstep {
   template <typename Message>
   bool receive(const void* bytes, size_t size, Pending<Message>& pending) {
     Mail<Message>& spare = pending.slots[1 - pending.current];
-    if (!admission_.admit(bytes, size, now_s_, spare.message)) return false;
+    const bool admitted = admission_.admit(bytes, size, now_s_, spare.message);
+    count_rejected(admission_);
+    if (!admitted) return false;
     const auto* first = static_cast<const uint8_t*>(bytes);
     spare.bytes.assign(first, first + size);
     spare.count = pending.mail().count + 1;
@@ -73,10 +75,17 @@ class Lockstep {
 
   void join(size_t part, const void* bytes, size_t size) {
     const auto whole = neighbourhood_.join(part, bytes, size, now_s_);
-    if (whole && receive(whole->packet.bytes, whole->packet.size, *obstacles_)) obstacles_->age_s = whole->age_s;
+    if (!whole) return count_rejected(neighbourhood_);
+    if (receive(whole->packet.bytes, whole->packet.size, *obstacles_)) obstacles_->age_s = whole->age_s;
   }
 
-  int64_t rejected() const { return admission_.rejected() + neighbourhood_.rejected(); }
+  /// After a message that went no farther than this gate.
+  template <typename Gate>
+  void count_rejected(const Gate& gate) {
+    const int64_t count = admission_.rejected() + neighbourhood_.rejected();
+    if (count > rejected_) rejected_reason_ = gate.last_reason();
+    rejected_ = count;
+  }
 
   void cycle(const void* bytes, size_t size) {
     if (!receive(bytes, size, arm_)) return;
@@ -84,9 +93,8 @@ class Lockstep {
     occasion.utime = arm_.mail().message.utime;
     occasion.now_s = now_s_ = static_cast<double>(occasion.utime) * 1e-6;
     occasion.stop = stop_;
-    occasion.rejected_messages = rejected();
-    const char* reason = neighbourhood_.last_reason();
-    occasion.rejected_reason = *reason ? reason : admission_.last_reason();
+    occasion.rejected_messages = rejected_;
+    occasion.rejected_reason = rejected_reason_;
     runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, occasion);
   }
 
@@ -100,6 +108,8 @@ class Lockstep {
   Pending<Target> target_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
   double now_s_ = 0.0;
+  int64_t rejected_ = 0;
+  const char* rejected_reason_ = "";
   const std::atomic<bool>& stop_;
 };
 

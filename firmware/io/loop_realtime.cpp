@@ -50,7 +50,7 @@ class Receiver {
     const double now_s = monotonic_s();
     const auto whole = neighbourhood_.join(part, bytes, size, now_s);
     if (whole) return post(whole->packet.bytes, whole->packet.size, now_s - whole->age_s, obstacles);
-    count_rejected();
+    count_rejected(neighbourhood_);
   }
 
   template <typename Message>
@@ -63,13 +63,15 @@ class Receiver {
       mail.count = ++count_;
       mailbox.post();
     }
-    count_rejected();
+    count_rejected(admission_);
   }
 
-  void count_rejected() {
-    const char* reason = neighbourhood_.last_reason();
-    rejected_reason = *reason ? reason : admission_.last_reason();
-    rejected = admission_.rejected() + neighbourhood_.rejected();
+  /// After a message that went no farther than this gate.
+  template <typename Gate>
+  void count_rejected(const Gate& gate) {
+    const int64_t count = admission_.rejected() + neighbourhood_.rejected();
+    if (count > rejected) rejected_reason = gate.last_reason();
+    rejected = count;
   }
 
   Wire& wire_;
