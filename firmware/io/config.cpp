@@ -184,9 +184,7 @@ void read_foresight(Section section, ForesightSettings& foresight) {
   section.flag("enabled", foresight.enabled);
   section.number("horizon_s", foresight.horizon_s, 0.5, 20.0);
   section.not_negative("clearance_m", foresight.clearance_m);
-  double seed = static_cast<double>(foresight.seed);
-  section.number("seed", seed, 0.0, 1e9);
-  foresight.seed = static_cast<int64_t>(seed);
+  section.whole("seed", foresight.seed, 0.0, 1e9);
   section.finish();
 }
 
@@ -208,9 +206,7 @@ Robot read_robot(Section section, const std::string& config_file, const Override
   section.text("base", robot.base);
   section.text("tip", robot.tip);
   section.texts("package_path", robot.meshes.package_path);
-  double capsules_per_mesh = robot.meshes.capsules_per_mesh;
-  section.number("capsules_per_mesh", capsules_per_mesh, 1.0, 8.0);
-  robot.meshes.capsules_per_mesh = static_cast<int>(capsules_per_mesh);
+  section.whole("capsules_per_mesh", robot.meshes.capsules_per_mesh, 1.0, 8.0);
   section.finish();
   if (!overrides.urdf.empty()) robot.urdf = overrides.urdf;
   if (!overrides.base.empty()) robot.base = overrides.base;

@@ -30,6 +30,13 @@ class Section {
 
   /// Each leaves `value` as it is when the key is absent.
   void number(const std::string& key, double& value, double lowest, double highest);
+  template <typename Whole>
+  void whole(const std::string& key, Whole& value, double lowest, double highest) {
+    auto read = static_cast<double>(value);
+    number(key, read, lowest, highest);
+    value = static_cast<Whole>(read);
+    if (static_cast<double>(value) != read) fail(key, "must be a whole number");
+  }
   void positive(const std::string& key, double& value);
   void not_negative(const std::string& key, double& value);
   void flag(const std::string& key, bool& value);

@@ -57,6 +57,36 @@ const Key kNumbers[] = {
     {"obstacles", "speed_bound_mps", 1.5, [](const Config& c) { return c.model.settings.obstacle_speed_bound_mps; }},
     {"limits", "velocity_radps", 1.5, [](const Config& c) { return c.model.arm.limits.velocity_radps[6]; }},
     {"limits", "acceleration_radps2", 1.5, [](const Config& c) { return c.model.arm.limits.acceleration_radps2[6]; }},
+    {"sidestep", "k_pos_per_s", 0.75, [](const Config& c) { return c.model.settings.sidestep.k_pos_per_s; }},
+    {"sidestep", "k_ori_per_s", 0.75, [](const Config& c) { return c.model.settings.sidestep.k_ori_per_s; }},
+    {"sidestep", "k_posture_per_s", 0.75, [](const Config& c) { return c.model.settings.sidestep.k_posture_per_s; }},
+    {"sidestep", "k_guide_per_s", 0.75, [](const Config& c) { return c.model.settings.sidestep.k_guide_per_s; }},
+    {"sidestep", "guide_posture_share", 0.75, [](const Config& c) { return c.model.settings.sidestep.guide_posture_share; }},
+    {"sidestep", "v_max_mps", 0.75, [](const Config& c) { return c.model.settings.sidestep.v_max_mps; }},
+    {"sidestep", "lambda_0", 0.75, [](const Config& c) { return c.model.settings.sidestep.lambda_0; }},
+    {"sidestep", "sigma_0", 0.75, [](const Config& c) { return c.model.settings.sidestep.sigma_0; }},
+    {"shield", "hard_clearance_m", 0.03, [](const Config& c) { return c.model.settings.shield.hard_clearance_m; }},
+    {"shield", "hard_gain_per_s", 0.75, [](const Config& c) { return c.model.settings.shield.hard_gain_per_s; }},
+    {"shield", "pass_clearance_m", 0.75, [](const Config& c) { return c.model.settings.shield.pass_clearance_m; }},
+    {"shield", "pass_gain_per_s", 0.75, [](const Config& c) { return c.model.settings.shield.pass_gain_per_s; }},
+    {"shield", "pass_reaction_s", 0.75, [](const Config& c) { return c.model.settings.shield.pass_reaction_s; }},
+    {"shield", "pass_horizon_s", 0.75, [](const Config& c) { return c.model.settings.shield.pass_horizon_s; }},
+    {"shield", "comfort_clearance_m", 0.75, [](const Config& c) { return c.model.settings.shield.comfort_clearance_m; }},
+    {"shield", "comfort_gain_per_s", 0.75, [](const Config& c) { return c.model.settings.shield.comfort_gain_per_s; }},
+    {"shield", "comfort_far_m", 0.55, [](const Config& c) { return c.model.settings.shield.comfort_far_m; }},
+    {"shield", "comfort_near_m", 0.35, [](const Config& c) { return c.model.settings.shield.comfort_near_m; }},
+    {"shield", "comfort_weight", 0.75, [](const Config& c) { return c.model.settings.shield.comfort_weight; }},
+    {"shield", "comfort_least_weight", 0.75, [](const Config& c) { return c.model.settings.shield.comfort_least_weight; }},
+    {"shield", "tool_weight", 0.75, [](const Config& c) { return c.model.settings.shield.tool_weight; }},
+    {"shield", "self_clearance_m", 0.75, [](const Config& c) { return c.model.settings.shield.self_clearance_m; }},
+    {"shield", "range_m", 0.75, [](const Config& c) { return c.model.settings.shield.range_m; }},
+    {"foresight", "horizon_s", 1.5, [](const Config& c) { return c.model.settings.foresight.horizon_s; }},
+    {"foresight", "clearance_m", 1.5, [](const Config& c) { return c.model.settings.foresight.clearance_m; }},
+    {"foresight", "seed", 9, [](const Config& c) { return static_cast<double>(c.model.settings.foresight.seed); }},
+    {"ages", "old_place_s", 1.5, [](const Config& c) { return c.model.settings.ages.old_place_s; }},
+    {"obstacles", "latency_s", 0.75, [](const Config& c) { return c.model.settings.obstacle_trust.latency_s; }},
+    {"obstacles", "uncertainty_m", 0.75, [](const Config& c) { return c.model.settings.obstacle_trust.uncertainty_m; }},
+    {"obstacles", "acceleration_bound_mps2", 0.75, [](const Config& c) { return c.model.settings.obstacle_trust.acceleration_bound_mps2; }},
     {"blackbox", "seconds", 25, [](const Config& c) { return c.blackbox.seconds; }},
     {"limits", "lower_rad", -1.5, [](const Config& c) { return c.model.arm.limits.lower_rad[6]; }},
     {"limits", "upper_rad", 1.5, [](const Config& c) { return c.model.arm.limits.upper_rad[6]; }},
@@ -139,6 +169,7 @@ void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
   const Config file = load_config("firmware/config/lwa3.yaml", {}), defaults = load("");
   for (const Key& key : kNumbers)
     check_near_because(key.read(file), key.read(defaults), 0, "%s.%s", key.section, key.key);
+  assert_true(file.model.settings.shield.enabled && file.model.settings.foresight.enabled);
   assert_string_equal(file.channels.arm_state.c_str(), "ARM_STATE");
   assert_string_equal(defaults.channels.controller_status.c_str(), "CONTROLLER_STATUS");
 }

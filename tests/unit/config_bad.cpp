@@ -78,6 +78,7 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"control: {rate_hz: 0}", "control.rate_hz"},
       {"control: {rate_hz: 1e9}", "control.rate_hz"},
       {"blackbox: {seconds: 0}", "blackbox.seconds"},
+      {"foresight: {seed: 1.7}", "foresight.seed"},
       {"blackbox: {seconds: 61}", "blackbox.seconds"},
       {"blackbox: {file: log}", "blackbox.file"},
       {"control: {rate_hz: -100}", "control.rate_hz"},
