@@ -176,7 +176,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
 
   const Facts facts = observe(model, inputs, now_s, next);
   next.supervision = next_mode(state.supervision, facts);
-  const bool streaming = next.commanding = state.commanding && !facts.arm_starting;
+  const bool streaming = next.commanding = next.commanding && !facts.arm_starting;
   if (facts.arm_known) {
     const ArmState& arm = *inputs.arm.message;
     if (!streaming) start_from(model, arm, next);

@@ -25,9 +25,11 @@ bool plausible(const ArmState& state, int joints) {
 }
 
 bool plausible(const Target& target) {
+  const bool finite = target.orientation.coeffs().allFinite() && target.angular_velocity_radps.allFinite();
   const bool turned = !target.tracks_orientation || (std::abs(target.orientation.norm() - 1.0) < 1e-3 &&
                                                      within(target.angular_velocity_radps, kLargestRate_radps));
-  return turned && within(target.position_m, kLargestLength_m) && within(target.velocity_mps, kLargestSpeed_mps);
+  return finite && turned && within(target.position_m, kLargestLength_m) &&
+         within(target.velocity_mps, kLargestSpeed_mps);
 }
 
 bool plausible(const Obstacle& obstacle) {
@@ -39,14 +41,22 @@ bool plausible(const Obstacle& obstacle) {
          within(obstacle.angular_velocity_radps, kLargestRate_radps);
 }
 
-bool Order::accept(int64_t utime, double now_s, double restart_s) {
+bool Order::starts_anew(int64_t utime, double now_s, double restart_s) {
   const bool silent = std::abs(now_s - accepted_s_) > restart_s;  // or the clock was set back
-  const bool went_back = static_cast<double>(utime_) - static_cast<double>(utime) > restart_s * 1e6;
-  const bool newer = utime > utime_, anew = utime < utime_ && (silent || went_back);
-  if (any_ && !newer && !anew) return false;
+  if (silent) return utime != utime_;
+  const bool far_back = static_cast<double>(utime_) - static_cast<double>(utime) > restart_s * 1e6;
+  if (!far_back) return false;
+  anew_in_a_row_ = anew_in_a_row_ > 0 && utime > anew_utime_ ? anew_in_a_row_ + 1 : 1;
+  anew_utime_ = utime;
+  return anew_in_a_row_ == kAnewInARow;
+}
+
+bool Order::accept(int64_t utime, double now_s, double restart_s) {
+  if (any_ && utime <= utime_ && !starts_anew(utime, now_s, restart_s)) return false;
   const double by_sender_s = 1e-6 * (static_cast<double>(utime) - static_cast<double>(utime_));
   elapsed_s_ = any_ ? std::max(std::abs(now_s - accepted_s_), by_sender_s) : 0.0;
   any_ = true;
+  anew_in_a_row_ = 0;
   utime_ = utime;
   accepted_s_ = now_s;
   return true;

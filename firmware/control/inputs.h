@@ -24,9 +24,10 @@ struct Latest {
 /// Decides by its utime whether a message is newer than all before it on its channel.
 class Order {
  public:
-  /// Accepts a newer utime. An older one is dropped unless its sender has evidently started anew: it is older by more
-  /// than `restart_s`, or nothing was accepted for `restart_s` (local receipt times, s). A repeated one is always
-  /// dropped: a sender that has frozen says nothing new.
+  /// Accepts a newer utime. An older one is dropped unless its sender has evidently started anew: nothing was accepted
+  /// for `restart_s` (local receipt times, s), or it is the last of three in a row that are older by more than that; a
+  /// message that is merely late comes among newer ones. A repeated utime is always dropped: a sender that has frozen
+  /// says nothing new.
   bool accept(int64_t utime, double now_s, double restart_s);
 
   /// From the message accepted before the last to the last, s, by their receipt or by their sender's clock, whichever
@@ -34,8 +35,13 @@ class Order {
   double elapsed_s() const { return elapsed_s_; }
 
  private:
+  static constexpr int kAnewInARow = 3;
+  bool starts_anew(int64_t utime, double now_s, double restart_s);
+
   bool any_ = false;
   int64_t utime_ = 0;
+  int64_t anew_utime_ = 0;  ///< of the last one that was far back
+  int anew_in_a_row_ = 0;   ///< those with nothing accepted in between
   double accepted_s_ = 0.0;
   double elapsed_s_ = 0.0;
 };

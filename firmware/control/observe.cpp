@@ -7,9 +7,9 @@ namespace {
 
 constexpr int kMostSkippedCycles = 3;  // in a row; more than a hiccup
 
-/// Whether an arm can have come from one state to the next. One period and a sensor's noise are granted on top.
-bool reachable(const Model& model, const State& before, const ArmState& arm) {
-  const double dt_s = static_cast<double>(arm.utime - before.arm_utime) * 1e-6;
+/// Whether an arm can have come from one state to the next in this time. One period and a sensor's noise are granted on
+/// top.
+bool reachable(const Model& model, const State& before, const ArmState& arm, double dt_s) {
   if (dt_s <= 0.0) return false;
   const JointVector step_rad = (arm.position_rad - before.arm_position_rad).cwiseAbs();
   const JointVector allowed_rad = model.arm.limits.velocity_radps * (dt_s + model.settings.period_s()) +
@@ -23,19 +23,46 @@ bool speaks_anew(double silence_s, const Latest<ArmState>& arm, const State& bef
          arm.received_s - before.arm_received_s > silence_s;
 }
 
-/// Returns false when a new arm state contradicts the one before.
-bool follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s, State& next) {
-  if (arm.count == next.arm_count) return true;
+/// A limit for the time between two arm states as the cycles see them; it cannot be less than a period.
+double longest_gap_s(const Model& model, double limit_s) {
+  return std::max(limit_s, 1.5 * model.settings.period_s());
+}
+
+/// From an arm state that comes too late until the commands, braked, are at rest.
+double time_to_rest_s(const Model& model, const State& before) {
+  const double braking_s =
+      before.velocity_radps.cwiseAbs().cwiseQuotient(model.arm.limits.acceleration_radps2).maxCoeff();
+  return longest_gap_s(model, model.settings.ages.arm_state_s) + braking_s;
+}
+
+/// What a new arm state tells about the time since the one before.
+struct ArmNews {
+  bool contradicts = false;  ///< no arm gets there in that time
+  double silence_s = 0.0;    ///< before it, on a clock that stood still meanwhile, as in lockstep
+};
+
+ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s, State& next) {
+  ArmNews news;
+  if (arm.count == next.arm_count) return news;
   const bool first = next.arm_count == 0;
-  const bool gap = arm.received_s - next.arm_received_s > model.settings.ages.arm_state_lost_s;
-  const bool agrees = first || reachable(model, next, *arm.message);
+  const double by_receipt_s = arm.received_s - next.arm_received_s;
+  const double by_sender_s = static_cast<double>(arm.message->utime - next.arm_utime) * 1e-6;
+  const bool gap = by_receipt_s > longest_gap_s(model, model.settings.ages.arm_state_lost_s);
+  const bool agrees = first || reachable(model, next, *arm.message, by_sender_s);
   if (first || gap || !agrees) next.consistent_since_s = now_s;
+  news.contradicts = !agrees && !gap;
+  // Were there others in between, it was this side that did not look.
+  if (!first && arm.count == next.arm_count + 1) news.silence_s = by_receipt_s;
+  // Commands do not go on from the last one when that does not lead this arm any more.
+  if (next.commanding)
+    next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, by_sender_s)) &&
+                      news.silence_s <= time_to_rest_s(model, next);
   if (speaks_anew(model.settings.start_guard_s, arm, next)) next.arm_started_s = arm.received_s;
   next.arm_count = arm.count;
   next.arm_received_s = arm.received_s;
   next.arm_utime = arm.message->utime;
   next.arm_position_rad = arm.message->position_rad;
-  return agrees || gap;
+  return news;
 }
 
 }  // namespace
@@ -46,10 +73,14 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   Facts facts;
   facts.arm_known = inputs.arm.message != nullptr;
   if (facts.arm_known) {
-    facts.arm_broke = !follow_arm(model, inputs.arm, now_s, next);
+    const ArmNews news = follow_arm(model, inputs.arm, now_s, next);
+    const auto in_time = [&](double limit_s) {
+      return inputs.arm.fresh(now_s, limit_s) && news.silence_s <= longest_gap_s(model, limit_s);
+    };
+    facts.arm_broke = news.contradicts;
     facts.arm_starting = now_s - next.arm_started_s < model.settings.start_guard_s;
-    facts.arm_fresh = inputs.arm.fresh(now_s, ages.arm_state_s);
-    facts.arm_lost = !inputs.arm.fresh(now_s, ages.arm_state_lost_s);
+    facts.arm_fresh = in_time(ages.arm_state_s);
+    facts.arm_lost = !in_time(ages.arm_state_lost_s);
     if (facts.arm_lost) next.consistent_since_s = now_s;
     facts.arm_consistent = now_s - next.consistent_since_s >= ages.consistent_s - rounding_s;
   }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <vector>
 
 #include "tests/support/check.h"
@@ -83,6 +84,8 @@ void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
     loop.arm.position_rad[0] += 0.5;
     loop.cycle();
     assert_true(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateInconsistent);
+    assert_false(loop.last.commanding);  // not one more that leads elsewhere
+    check_near(loop.last.command.position_rad, loop.arm.position_rad, 0.02);
     loop.run(0.48);
     assert_true(loop.mode() == Mode::kFault);
     loop.run(0.05);
@@ -90,6 +93,32 @@ void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
     loop.run(8.0);
     check(loop.last.report.target_distance_m < 2e-3, "%s: %g m left", law, loop.last.report.target_distance_m);
     check_stream(loop);
+  }
+}
+
+/// No cycles run meanwhile, as in lockstep, where the arm's states are the clock.
+void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
+  for (const char* law : kLaws) {
+    const struct {
+      double silence_s, moved_rad;
+      Mode mode;
+    } cases[] = {
+        {0.02, 0.0, Mode::kTrack}, {0.05, 0.0, Mode::kBrake}, {0.15, 0.0, Mode::kFault}, {2.0, 0.8, Mode::kFault}};
+    for (const auto& each : cases) {
+      ClosedLoop loop = tracking(law);
+      Inputs inputs = loop.receive();
+      ArmState arm = *inputs.arm.message;
+      const double now_s = loop.state.arm_received_s + each.silence_s;
+      arm.utime = loop.state.arm_utime + std::llround(each.silence_s * 1e6);
+      arm.position_rad[0] += each.moved_rad;
+      inputs.arm = {&arm, now_s, loop.state.arm_count + 1};
+      inputs.target.received_s = inputs.obstacles.received_s = now_s;
+      const Result result = step(loop.model, loop.state, inputs, now_s);
+      check(result.report.mode == each.mode, "%s, %g s: %s", law, each.silence_s, result.report.message);
+      if (each.mode != Mode::kFault) check(result.commanding, "%s, %g s", law, each.silence_s);
+      if (each.moved_rad > 0.0) check(!result.commanding, "%s, %g s", law, each.silence_s);
+      check_near(result.command.position_rad, arm.position_rad, 0.1);
+    }
   }
 }
 
@@ -136,6 +165,7 @@ int main() {
       cmocka_unit_test(old_obstacles_brake_and_grow),
       cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
       cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
+      cmocka_unit_test(a_silence_of_the_clock_itself_is_judged_as_any_other),
       cmocka_unit_test(an_arm_whose_clock_stands_still_or_goes_back_is_a_fault),
       cmocka_unit_test(target_and_obstacles_are_moved_forward_to_the_present),
   };

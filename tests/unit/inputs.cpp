@@ -66,7 +66,7 @@ void no_number_of_a_target_may_be_impossible(void**) {
       turning.angular_velocity_radps[i] = bad;
       check(!plausible(position) && !plausible(velocity) && !plausible(turning), "element %d: %g", i, bad);
       turning.tracks_orientation = false;
-      check(plausible(turning), "not used: element %d", i);
+      check(plausible(turning) == std::isfinite(bad), "not used, but a number: element %d, %g", i, bad);
     }
     for (int i = 0; i < 4; ++i) {
       Target target = good_target();
@@ -137,9 +137,11 @@ void a_sender_that_starts_anew_is_accepted(void**) {
   Order far_back;
   assert_true(far_back.accept(5'000'000, 1.00, 0.1));
   assert_false(far_back.accept(4'950'000, 1.01, 0.1));  // 50 ms back: late, not new
-  assert_true(far_back.accept(10, 1.02, 0.1));          // 5 s back
-  assert_true(far_back.accept(20, 1.03, 0.1));
-  assert_false(far_back.accept(15, 1.04, 0.1));
+  assert_false(far_back.accept(10, 1.02, 0.1));         // 5 s back: perhaps very late
+  assert_false(far_back.accept(20, 1.03, 0.1));
+  assert_true(far_back.accept(30, 1.04, 0.1));  // but not three in a row
+  assert_true(far_back.accept(40, 1.05, 0.1));
+  assert_false(far_back.accept(35, 1.06, 0.1));
 
   Order silence;
   assert_true(silence.accept(5'000'000, 1.00, 0.1));
@@ -147,13 +149,25 @@ void a_sender_that_starts_anew_is_accepted(void**) {
   assert_true(silence.accept(4'990'000, 1.11, 0.1));
 }
 
+/// Nor do any number of them among newer ones.
+void a_message_that_is_very_late_is_dropped(void**) {
+  Order order;
+  for (int i = 0; i < 20; ++i) {
+    assert_true(order.accept(5'000'000 + 10'000 * i, 1.00 + 0.01 * i, 0.1));
+    assert_false(order.accept(4'000'000 + 10'000 * i, 1.001 + 0.01 * i, 0.1));
+    assert_false(order.accept(3'000'000, 1.002 + 0.01 * i, 0.1));
+  }
+}
+
 void one_message_from_the_far_future_does_not_lock_its_sender_out(void**) {
   Order order;
   assert_true(order.accept(1'000'000, 1.00, 0.1));
   assert_true(order.accept(INT64_MAX, 1.01, 0.1));
-  assert_true(order.accept(1'020'000, 1.02, 0.1));
-  assert_true(order.accept(INT64_MIN, 1.03, 0.1));
+  assert_false(order.accept(1'020'000, 1.02, 0.1));
+  assert_false(order.accept(1'030'000, 1.03, 0.1));
   assert_true(order.accept(1'040'000, 1.04, 0.1));
+  assert_false(order.accept(INT64_MIN, 1.05, 0.1));
+  assert_true(order.accept(1'060'000, 1.06, 0.1));
 }
 
 /// In lockstep the arm's utime is the clock as well.
@@ -181,6 +195,7 @@ int main() {
       cmocka_unit_test(only_newer_messages_are_accepted),
       cmocka_unit_test(the_first_message_may_say_anything),
       cmocka_unit_test(a_sender_that_starts_anew_is_accepted),
+      cmocka_unit_test(a_message_that_is_very_late_is_dropped),
       cmocka_unit_test(one_message_from_the_far_future_does_not_lock_its_sender_out),
       cmocka_unit_test(where_the_messages_are_the_clock_old_ones_are_dropped_too),
   };
