@@ -57,6 +57,7 @@ const Guide& Foresight::think(const Snapshot& now) {
   if (!now.tracking) {
     take(Guide{}, Forecast{});
     candidate_ = Guide{};
+    planner_.start_over();
     calls_ = 0;
     return guide_;
   }

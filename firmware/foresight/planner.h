@@ -20,6 +20,9 @@ class Planner {
  public:
   explicit Planner(const Model& model) : model_(model), dice_(model.settings.foresight.seed) {}
 
+  /// Forgets what was thrown so far.
+  void start_over() { dice_ = Dice(model_.settings.foresight.seed); }
+
   /// Tries a few random ways and returns the one that arrives soonest; without knots when all fail. Bounded.
   Guide to_target(const Snapshot& from);
 
