@@ -1,6 +1,11 @@
 #include "firmware/io/cycle_runner.h"
 
 namespace sidestep {
+namespace {
+
+constexpr double kRejectionShown_s = 5.0;
+
+}  // namespace
 
 CycleRunner::CycleRunner(const Config& config, Wire& wire, Blackbox& blackbox, Adviser& adviser, bool lockstep,
                          int standing)
@@ -47,11 +52,17 @@ void CycleRunner::run(const Post& post, const Occasion& occasion) {
                  occasion.wake_latency_s,
                  timing_.skipped_cycles,
                  occasion.rejected_messages,
-                 occasion.rejected_reason};
+                 reason_to_show(occasion)};
   wire_.publish(kept.report, kept.record);
   blackbox_.keep(post, kept);
   adviser_.tell(moment.inputs, state_, moment.now_s);
   if (!lockstep_) publish_timing(occasion);
+}
+
+const char* CycleRunner::reason_to_show(const Occasion& occasion) {
+  if (occasion.rejected_messages != rejected_messages_) rejected_s_ = occasion.now_s;
+  rejected_messages_ = occasion.rejected_messages;
+  return occasion.now_s - rejected_s_ <= kRejectionShown_s ? occasion.rejected_reason : "";
 }
 
 void CycleRunner::publish_timing(const Occasion& occasion) {

@@ -35,6 +35,8 @@ class CycleRunner {
 
  private:
   void publish_timing(const Occasion& occasion);
+  /// Why the last message was rejected, for a while.
+  const char* reason_to_show(const Occasion& occasion);
 
   const Model& model_;
   Wire& wire_;
@@ -46,6 +48,8 @@ class CycleRunner {
   Timing timing_;
   CycleClock clock_{timing_};
   double timing_published_s_ = 0.0;
+  int64_t rejected_messages_ = 0;
+  double rejected_s_ = -HUGE_VAL;
 };
 
 }  // namespace sidestep

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 
 #include "firmware/io/admission.h"
@@ -26,6 +27,7 @@ class Lockstep {
     wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });
     wire_.on_target([this](const void* bytes, size_t size) { receive(bytes, size, target_); });
     wire_.on_obstacles([this](const void* bytes, size_t size) { join(0, bytes, size); });
+    wire_.on_foreign_command(true, [this] { foreign_command_s_ = now_s_; });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
       wire_.on_neighbour(k, [this, k](const void* bytes, size_t size) { join(k + 1, bytes, size); });
   }
@@ -93,6 +95,7 @@ class Lockstep {
     occasion.utime = arm_.mail().message.utime;
     occasion.now_s = now_s_ = static_cast<double>(occasion.utime) * 1e-6;
     occasion.stop = stop_;
+    occasion.foreign_command_s = foreign_command_s_;
     occasion.rejected_messages = rejected_;
     occasion.rejected_reason = rejected_reason_;
     runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, occasion);
@@ -108,6 +111,7 @@ class Lockstep {
   Pending<Target> target_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
   double now_s_ = 0.0;
+  double foreign_command_s_ = -HUGE_VAL;
   int64_t rejected_ = 0;
   const char* rejected_reason_ = "";
   const std::atomic<bool>& stop_;

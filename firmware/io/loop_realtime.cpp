@@ -31,7 +31,7 @@ class Receiver {
     wire.on_obstacles([this](const void* bytes, size_t size) { join(0, bytes, size); });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
       wire.on_neighbour(k, [this, k](const void* bytes, size_t size) { join(k + 1, bytes, size); });
-    wire.on_foreign_command([this] { foreign_command_s = monotonic_s(); });
+    wire.on_foreign_command(false, [this] { foreign_command_s = monotonic_s(); });
   }
 
   void run(const std::atomic<bool>& end) {
@@ -138,9 +138,9 @@ void request(bool granted, const char* what, const std::string& why_not, int& li
 LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Requests& requests) {
   std::string why_not;
   int limiting = kLimitingNothing;
-  request(lock_memory(why_not), "locking memory", why_not, limiting);
   Blackbox blackbox(config, requests.write_blackbox);
   Adviser adviser(config.model, false);
+  request(lock_memory(why_not), "locking memory", why_not, limiting);
   // LCM starts a thread at the first subscription; it and the receiver inherit the priority of this one.
   request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
 

@@ -21,6 +21,9 @@ double seconds(clockid_t clock) {
 // More than the deepest call of the loop needs, far less than the limit of a thread's stack.
 constexpr size_t kStack_bytes = 512 * 1024;
 
+// More than the threads and mailboxes come to that are made after the memory is locked.
+constexpr size_t kStillToCome_bytes = 128 << 20;
+
 void touch_stack() {
   volatile char stack[kStack_bytes];
   for (size_t i = 0; i < kStack_bytes; i += 1024) stack[i] = 0;
@@ -48,9 +51,21 @@ void sleep_until(double instant_s) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
+/// Whether so much more could be locked: where all memory is, an allocation fails that would go over the limit.
+bool has_room(size_t bytes) {
+  void* room = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room != MAP_FAILED) munmap(room, bytes);
+  return room != MAP_FAILED;
+}
+
 bool lock_memory(std::string& why_not) {
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     why_not = std::strerror(errno);
+    return false;
+  }
+  if (!has_room(kStillToCome_bytes)) {
+    munlockall();
+    why_not = "the limit of locked memory is too low";
     return false;
   }
   touch_stack();

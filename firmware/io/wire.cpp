@@ -85,9 +85,12 @@ void Wire::on_neighbour(size_t k, ByteHandler handler) {
   network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }
 
-void Wire::on_foreign_command(std::function<void()> handler) {
-  const auto listen = [this, handler = std::move(handler)](const void* bytes, size_t size) {
-    if (!network_->own_commands.has(utime_of(bytes, size))) handler();
+void Wire::on_foreign_command(bool lockstep, std::function<void()> handler) {
+  const auto listen = [this, lockstep, handler = std::move(handler), last = int64_t{-1}](const void* bytes,
+                                                                                         size_t size) mutable {
+    const int64_t utime = utime_of(bytes, size);
+    if ((lockstep && utime == last) || !network_->own_commands.has(utime)) handler();
+    last = utime;
   };
   network_->subscribe(network_->channels.arm_command, listen);
 }

@@ -25,8 +25,9 @@ class Wire {
   void on_obstacles(ByteHandler handler);
   /// Links of the k-th neighbour, k from 0.
   void on_neighbour(size_t k, ByteHandler handler);
-  /// Commands on our own command channel that this Wire has not sent.
-  void on_foreign_command(std::function<void()> handler);
+  /// Commands on our own command channel that this Wire has not sent. In lockstep all controllers of an arm answer with
+  /// the same utime: there the second one with it is foreign.
+  void on_foreign_command(bool lockstep, std::function<void()> handler);
 
   /// Handles one message, or waits for one for at most timeout_ms. Returns whether one was handled.
   bool receive(int timeout_ms);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <csignal>
 
 #include "tests/support/check.h"
 #include "tests/support/lcm_peer.h"
@@ -161,6 +162,36 @@ void the_arm_is_steered_to_the_target(void**) {
   }
 }
 
+/// Both answer every state of the arm, with the same utime; neither may lead it then.
+void a_second_controller_brakes_the_arm_for_as_long_as_it_is_there(void**) {
+  Play play("sidestep");
+  for (int i = 0; i < 100; ++i) play.cycle();
+  assert_int_equal(play.peer.statuses.back().mode, controller_status_t::TRACK);
+  Process second = start_controller("paper");
+  play.forget();
+  for (int i = 0; i < 200 && play.peer.statuses.size() <= static_cast<size_t>(i); ++i) {
+    play.cycle();
+    play.peer.listen(0.02);
+  }
+  for (int i = 0; i < 100; ++i) {
+    play.cycle();
+    play.peer.listen(0.005);
+  }
+  play.forget();
+  for (int i = 0; i < 20; ++i) {
+    play.cycle();
+    play.peer.listen(0.005);
+  }
+  assert_int_equal(play.peer.commands.size(), 40);
+  for (const controller_status_t& status : play.peer.statuses)
+    check(status.message.find("another controller") != std::string::npos, "%s", status.message.c_str());
+  for (const joint_command_t& command : play.peer.commands)
+    for (const double velocity_radps : command.joint_velocity) check_near(velocity_radps, 0.0, 0);
+  second.signal(SIGKILL);
+  for (int i = 0; i < 120; ++i) play.cycle();
+  assert_int_equal(play.peer.statuses.back().mode, controller_status_t::TRACK);
+}
+
 struct Transcript {
   std::vector<Bytes> commands, statuses;
   int64_t rejected = 0, hostile = 0;
@@ -251,6 +282,7 @@ int main() {
       cmocka_unit_test_teardown(a_repeated_arm_state_is_not_answered_again, test::kill_processes),
       cmocka_unit_test_teardown(a_repeated_arm_state_after_a_pause_is_not_answered_again, test::kill_processes),
       cmocka_unit_test_teardown(the_arm_is_steered_to_the_target, test::kill_processes),
+      cmocka_unit_test_teardown(a_second_controller_brakes_the_arm_for_as_long_as_it_is_there, test::kill_processes),
       cmocka_unit_test_teardown(two_runs_are_equal_to_the_byte, test::kill_processes),
       cmocka_unit_test_teardown(hostile_messages_are_counted_and_change_nothing, test::kill_processes),
   };
