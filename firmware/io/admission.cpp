@@ -83,8 +83,9 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
                            vector(from.size));
     to.id = from.id;
     to.velocity_mps = vector(from.velocity);
-    if (from.shape != obstacle_t::SPHERE) to.angular_velocity_radps = vector(from.angular_velocity);
+    to.angular_velocity_radps = vector(from.angular_velocity);
     if (!plausible(to)) return reject("obstacles with impossible values");
+    if (from.shape == obstacle_t::SPHERE) to.angular_velocity_radps.setZero();
   }
   if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) return false;
   scratch_->jumps.complete(value, obstacles_order_.elapsed_s(), now_s);

@@ -5,7 +5,7 @@
 namespace sidestep {
 
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& turn, const Vector3& size_m) {
-  if (shape == Shape::kSphere) return sphere_obstacle(centre, size_m[0]);
+  if (shape == Shape::kSphere) return sphere_obstacle(centre, size_m.allFinite() ? size_m[0] : std::nan(""));
   const bool sized = size_m.allFinite() && size_m.minCoeff() >= 0.0, turned = std::abs(turn.norm() - 1.0) < 1e-3;
   const Matrix3 rotation = turn.normalized().toRotationMatrix();
   if (sized && turned && shape == Shape::kCapsule) return capsule_obstacle(centre, rotation, size_m[0], size_m[1]);

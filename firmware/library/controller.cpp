@@ -34,7 +34,7 @@ Obstacle obstacle_of(const Controller::Obstacle& from) {
                                   vector(from.size_m));
   to.id = from.id;
   to.velocity_mps = vector(from.velocity_mps);
-  if (from.shape != Controller::Shape::kSphere) to.angular_velocity_radps = vector(from.angular_velocity_radps);
+  to.angular_velocity_radps = vector(from.angular_velocity_radps);
   return to;
 }
 
@@ -139,6 +139,7 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
   for (int i = 0; i < count; ++i) {
     sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
     if (!plausible(obstacle)) return false;
+    if (obstacles[i].shape == Shape::kSphere) obstacle.angular_velocity_radps.setZero();
   }
   inside_->jumps.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
   newest.take_draft(now_s);
