@@ -19,7 +19,7 @@ void take_request(int signal) {
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = take_request;
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaction(signal, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -34,14 +34,16 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config, "YAML file of the robot, such as lwa3.yaml");
   app.add_option("--law", arguments.overrides.law, "the law, over the configuration's")
       ->check(CLI::IsMember({"sidestep", "paper"}));
-  app.add_option("--rate", arguments.overrides.rate_hz, "cycles a second, over the configuration's")->type_name("HZ");
+  app.add_option("--rate", arguments.overrides.rate_hz, "cycles a second, over the configuration's")
+      ->type_name("HZ")
+      ->check(CLI::Range(10.0, 2000.0));
   app.add_flag("--lockstep", arguments.lockstep, "one cycle for every arm state, on the arm's clock");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM's own)");
   app.add_option("--urdf", arguments.overrides.urdf, "robot description, over the configuration's");
   app.add_option("--base", arguments.overrides.base, "base link, over the configuration's");
   app.add_option("--tip", arguments.overrides.tip, "tip link, the tool, over the configuration's");
   app.footer(
-      "Stops on Ctrl-C or SIGTERM: brakes the arm to rest, then exits with 0. SIGUSR1 writes a blackbox log.\n"
+      "Stops on Ctrl-C, SIGTERM or SIGHUP: brakes the arm to rest, then exits with 0. SIGUSR1 writes a blackbox log.\n"
       "Exit codes: 0 stopped as asked, 1 failed while running, 2 wrong arguments, configuration or URDF.");
 }
 

@@ -44,11 +44,11 @@ void Summary::add(const Command& command) {
   // After such a pause the plant has stopped by itself.
   const bool from_rest = previous_.qd_radps.size() != command.qd_radps.size() || since_us > Plant::kWatchdogUs;
   if (from_rest) previous_.qd_radps = Eigen::VectorXd::Zero(command.qd_radps.size());
-  // Whole periods: in real time the controller's wake-ups jitter.
-  const int64_t periods = from_rest ? 1 : std::max<int64_t>(1, (since_us + period_us_ / 2) / period_us_);
+  // Whole periods: in real time the controller's wake-ups jitter. One that is faster has periods of its own.
+  const int64_t periods = from_rest ? 1 : (since_us + period_us_ / 2) / period_us_;
   const double change_radps = (command.qd_radps - previous_.qd_radps).cwiseAbs().maxCoeff();
-  const double period_s = static_cast<double>(periods * period_us_) / 1e6;
-  joint_acceleration_radps2_ = std::max(joint_acceleration_radps2_, change_radps / period_s);
+  const int64_t time_us = periods > 0 ? periods * period_us_ : std::max<int64_t>(1, since_us);
+  joint_acceleration_radps2_ = std::max(joint_acceleration_radps2_, change_radps / (1e-6 * time_us));
   previous_ = command;
 }
 

@@ -1,4 +1,5 @@
 """Sidestep's channels for the scripts: their types, and what was last heard on each."""
+import math
 import select
 import struct
 import sys
@@ -24,6 +25,21 @@ def decoded(channel, data):
         return None
 
 
+def network(lcm_url):
+    """LCM, or one line and exit code 1 when it cannot be had."""
+    try:
+        return lcm.LCM(lcm_url)
+    except RuntimeError:
+        sys.exit(f"cannot use the network '{lcm_url or 'of LCM'}' (is there a multicast route?)")
+
+
+def finite(text):
+    """A number for an option or a sphere."""
+    if not math.isfinite(value := float(text)):
+        raise ValueError(f"{text} is not a finite number")
+    return value
+
+
 class Newest(dict):
     """channel -> the newest message; a channel is missing until something was heard.
 
@@ -32,7 +48,7 @@ class Newest(dict):
 
     def __init__(self, channels, lcm_url):
         super().__init__()
-        self.wire = lcm.LCM(lcm_url)
+        self.wire = network(lcm_url)
         self.like = channels if isinstance(channels, dict) else {channel: channel for channel in channels}
         for channel in self.like:
             self.wire.subscribe(channel, self._take)

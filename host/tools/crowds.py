@@ -3,7 +3,7 @@ import csv
 import math
 import random
 
-from bus import obstacle_t
+from bus import finite, obstacle_t
 
 
 def obstacle(number, shape, size, position, velocity, about_y=(0.0, 0.0)):
@@ -42,7 +42,7 @@ def from_csv(file):
     tracks = {}
     with open(file, newline="") as stream:
         for row in csv.DictReader(stream):
-            t_s, *place = (float(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
+            t_s, *place = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
             tracks.setdefault(int(row["id"]), []).append((t_s, place))
     tracks = {number: sorted(track) for number, track in tracks.items()}
     return lambda t: [sphere(number, *on_track(track, t)) for number, track in tracks.items()]

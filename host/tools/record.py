@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Write what is said on Sidestep's channels into an lcm log until Ctrl-C; report.py and lcm-logplayer read it."""
+"""Write what is said on Sidestep's channels into an lcm log until Ctrl-C; lcm-logplayer reads it."""
 import argparse
 import select
 import signal
@@ -12,7 +12,7 @@ import bus
 
 def record(file, channels, lcm_url):
     """Returns the number of messages written."""
-    wire, log, written = lcm.LCM(lcm_url), lcm.EventLog(file, "w", overwrite=True), 0
+    wire, log, written = bus.network(lcm_url), lcm.EventLog(file, "w", overwrite=True), 0
 
     def keep(channel, data):
         nonlocal written
@@ -38,6 +38,10 @@ def main():
     arguments = parser.parse_args()
     for stop in (signal.SIGINT, signal.SIGTERM):  # a background job is born deaf to the first
         signal.signal(stop, signal.default_int_handler)
+    try:
+        open(arguments.log, "wb").close()
+    except OSError as error:
+        parser.error(str(error))
     print(f"{record(arguments.log, arguments.channels, arguments.lcm_url)} messages in {arguments.log}")
 
 

@@ -7,15 +7,13 @@ the full set: what is not in it is gone. No obstacle at all sends the empty set.
 import argparse
 import time
 
-import lcm
-
 import bus
 import crowds
 
 
 def send(crowd, lcm_url):
     """crowd: seconds since the start -> the obstacles."""
-    wire, message, start = lcm.LCM(lcm_url), bus.obstacles_t(), time.time()
+    wire, message, start = bus.network(lcm_url), bus.obstacles_t(), time.time()
     while True:
         message.utime = int(time.time() * 1e6)
         message.obstacles = crowd(time.time() - start)
@@ -25,7 +23,7 @@ def send(crowd, lcm_url):
 
 
 def numbers(text):
-    values = [float(number) for number in text.split(",")]
+    values = [bus.finite(number) for number in text.split(",")]
     if len(values) not in (4, 7):
         raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
     return values + [0.0] * (7 - len(values))
@@ -52,7 +50,9 @@ def main():
     arguments, spheres = parser.parse_known_args()  # so that a sphere may begin with a minus
     try:
         crowd = crowd_of(arguments, spheres)
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except KeyError as error:
+        parser.error(f"{arguments.csv}: no column {error}")
+    except (OSError, TypeError, ValueError) as error:
         parser.error(str(error))
     try:
         send(crowd, arguments.lcm_url)

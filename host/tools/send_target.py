@@ -5,9 +5,7 @@ import curses
 import math
 import time
 
-import lcm
-
-from bus import add_lcm_url, target_t
+from bus import add_lcm_url, finite, network, target_t
 
 STEP_M = 0.02  # of a key
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
@@ -16,7 +14,7 @@ KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1,
 
 def send(motion, lcm_url):
     """motion: seconds since the start -> (position, velocity)."""
-    wire, target, start = lcm.LCM(lcm_url), target_t(), time.time()
+    wire, target, start = network(lcm_url), target_t(), time.time()
     while True:
         target.utime = int(time.time() * 1e6)
         target.position, target.velocity = motion(time.time() - start)
@@ -67,7 +65,7 @@ def positive(text):
 
 def parsed():
     parser = argparse.ArgumentParser(description=__doc__, usage="%(prog)s [-h] [options] X Y Z [VX VY VZ]")
-    parser.add_argument("numbers", type=float, nargs="+", metavar="N",
+    parser.add_argument("numbers", type=finite, nargs="+", metavar="N",
                         help="position in m, or centre of the path; velocity in m/s (default 0)")
     way = parser.add_mutually_exclusive_group()
     way.add_argument("--circle", type=positive, metavar="RADIUS", help="a horizontal circle, radius in m")
