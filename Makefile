@@ -6,7 +6,7 @@ FAMILY   ?= all
 COUNT    ?= 500
 SEED     ?= 1
 LAW      ?= sidestep
-LOG      ?= $(BUILD)/runs/$(SCENARIO)-realtime.lcmlog
+LOG      ?= $(shell ls -t $(BUILD)/runs/*-realtime.lcmlog 2>/dev/null | head -1)
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
 .DEFAULT_GOAL := all
 
@@ -120,20 +120,20 @@ spy: $(BUILD)/types.jar ## lcm-spy with the types decoded
 	@java -cp $(SPY):$< lcm.spy.Spy
 
 report: all ## LOG (any lcm-logger log of a run; default: that of the last `make run`) as one page, build/report.html
-	@$(PYTHON) host/tools/report.py $(LOG) -o $(BUILD)/report.html
+	@$(PYTHON) host/tools/report.py $(or $(LOG),no-run-yet) -o $(BUILD)/report.html
 
 ##@ Checking
 
 lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
-clean: ## remove what was built, but not the virtual environment
-	rm -rf $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar \
+clean: ## remove what was built, but not the virtual environment, runs and figures
+	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar \
 	  $(SHARED) $(BUILD)/stage $(BUILD)/deb $(BUILD)/*.deb $(BUILD)/shlibdeps
 
 help: ## this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
-	  /^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
+	  /^[a-z0-9-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' Makefile
 
 .PHONY: all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
 

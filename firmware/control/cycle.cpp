@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "firmware/control/guided_law.h"
 #include "firmware/control/limits.h"

@@ -1,6 +1,5 @@
 #include "firmware/io/adviser.h"
 
-#include <algorithm>
 
 #include "firmware/io/realtime.h"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <stdexcept>
 
 #include "firmware/io/config_section.h"
 #include "firmware/io/find_file.h"

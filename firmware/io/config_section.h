@@ -2,10 +2,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <limits>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "firmware/model/types.h"

@@ -2,8 +2,6 @@
 
 #include <urdf_model/model.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <kdl/tree.hpp>
 #include <kdl_parser/kdl_parser.hpp>

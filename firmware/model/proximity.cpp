@@ -1,6 +1,5 @@
 #include "firmware/model/proximity.h"
 
-#include <algorithm>
 
 namespace sidestep {
 namespace {

@@ -58,7 +58,7 @@ std::vector<std::string> odd_joints(const Arm& arm) {
   return odd;
 }
 
-/// Pairs that nothing keeps apart although another link with a shape stands between them.
+/// Capsules that stand out far from their mesh, tiny shapes, and links that touch as built.
 std::vector<std::string> odd_shapes(const Arm& arm) {
   std::vector<std::string> odd;
   std::map<std::string, double> large;

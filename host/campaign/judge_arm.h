@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>

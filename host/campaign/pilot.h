@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "firmware/control/cycle.h"
 #include "host/campaign/sensing.h"

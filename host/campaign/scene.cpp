@@ -1,7 +1,6 @@
 #include "host/campaign/scene.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace sidestep::campaign {
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "host/sim/clock.h"
 #include "host/sim/play.h"

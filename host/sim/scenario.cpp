@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "firmware/io/find_file.h"
 #include "host/sim/fields.h"

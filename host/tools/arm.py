@@ -130,6 +130,12 @@ def robot_of(config, arguments):
     return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
 
 
+def channels_of(config):
+    """Name on the network -> one of bus.TYPES, as the configuration names them."""
+    said = yaml.safe_load(config.read_text()).get("channels") or {}
+    return {said.get(name.lower(), name): name for name in bus.TYPES}
+
+
 def add_robot(parser):
     for name in ("urdf", "base", "tip"):
         parser.add_argument(f"--{name}", help="over the configuration's")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Turn an lcm-logger log of a run into one HTML page that needs nothing else: 3-D replay and curves.
 
-Logs of build/sim --log, of host/tools/record.py and of lcm-logger are all alike.
+Logs of build/sim --log, of host/tools/record.py and of lcm-logger are all alike. The arm is that of --config, heard on
+its channels; of a log that `make run` wrote, that of the scenario, and the first where there are two.
 """
 import argparse
 import json
@@ -13,6 +14,7 @@ import lcm
 
 import arm
 import bus
+import runs
 
 FRAME_S = 0.03   # between two pictures of the replay
 MOST_FRAMES = 4000
@@ -22,14 +24,18 @@ class NoRun(Exception):
     """The text is one line that says what the log lacks."""
 
 
-def samples(file):
-    """Yields (t_s, channel -> newest message) after every CONTROLLER_STATUS that follows an arm state."""
-    newest, start_us = {}, None
+def samples(file, channels=None):
+    """Yields (t_s, channel -> newest message) after every CONTROLLER_STATUS that follows an arm state.
+
+    channels: name in the log -> one of bus.TYPES; default: each by its own name.
+    """
+    newest, start_us, channels = {}, None, channels or {name: name for name in bus.TYPES}
     for event in lcm.EventLog(str(file)):
-        if event.channel not in bus.TYPES or (message := bus.decoded(event.channel, event.data)) is None:
+        name = channels.get(event.channel)
+        if name is None or (message := bus.decoded(name, event.data)) is None:
             continue
-        newest[event.channel] = message
-        if event.channel == "CONTROLLER_STATUS" and "ARM_STATE" in newest:
+        newest[name] = message
+        if name == "CONTROLLER_STATUS" and "ARM_STATE" in newest:
             start_us = event.timestamp if start_us is None else start_us
             yield (event.timestamp - start_us) / 1e6, dict(newest)
 
@@ -90,12 +96,12 @@ def curves(rows, joints):
             ("CPU time of a cycle, us", {"time": status_line(rows, "cycle_time", 1e6)})]
 
 
-def data_of(log, robot):
+def data_of(log, robot, channels=None):
     if not log.is_file():
         raise NoRun(f"{log}: no such file")
     links, shapes = arm.chain(*robot), arm.shapes(*robot)
     joints = sum(axis is not None for _, _, axis in links)
-    rows = [row for row in samples(log) if row[1]["ARM_STATE"].num_joints == joints]
+    rows = [row for row in samples(log, channels) if row[1]["ARM_STATE"].num_joints == joints]
     if not rows:
         raise NoRun(f"{log}: no CONTROLLER_STATUS with an ARM_STATE of {joints} joints before it")
     frames = thinned(rows)
@@ -113,16 +119,26 @@ def page(data):
     return template.replace("/*DATA*/null", text)
 
 
+def config_for(log):
+    """What the scenario that a log is named after was played with; else the LWA3's."""
+    scenario_file = arm.ROOT / "host/scenarios" / f"{log.stem.removesuffix('-realtime')}.yaml"
+    if not scenario_file.is_file():
+        return arm.CONFIG
+    return runs.config_of(runs.arms_of(runs.load_scenario(scenario_file))[0])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
     parser.add_argument("-o", "--output", type=Path, default=Path("report.html"), help="default: %(default)s")
-    parser.add_argument("--config", type=Path, default=arm.CONFIG, help="default: the LWA3's")
+    parser.add_argument("--config", type=Path, help="default: of the scenario that LOG is named after, else the LWA3's")
     arm.add_robot(parser)
     arguments = parser.parse_args()
     try:
-        arguments.output.write_text(page(data_of(arguments.log, arm.robot_of(arguments.config, arguments))))
-    except (NoRun, OSError, ValueError) as error:
+        config = arguments.config or config_for(arguments.log)
+        robot, channels = arm.robot_of(config, arguments), arm.channels_of(config)
+        arguments.output.write_text(page(data_of(arguments.log, robot, channels)))
+    except (NoRun, runs.RunFailed, OSError, ValueError) as error:
         print(f"report.py: {error}", file=sys.stderr)
         sys.exit(2)
     print(f"wrote {arguments.output} ({arguments.output.stat().st_size / 1e6:.1f} MB)")
