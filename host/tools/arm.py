@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import yaml
 
+import bus
+
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "firmware/config/lwa3.yaml"
 
