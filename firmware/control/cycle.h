@@ -52,6 +52,7 @@ struct State {
   JointVector arm_position_rad;
   double consistent_since_s = 0.0;
   int skipped_in_a_row = 0;
+  double cycle_s = 0.0;  ///< when the last cycle was
 };
 
 /// What one cycle tells the world, as controller_status_t.

@@ -52,7 +52,7 @@ ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s
   if (first || gap || !agrees) next.consistent_since_s = now_s;
   news.contradicts = !agrees && !gap;
   // Were there others in between, it was this side that did not look.
-  if (!first && arm.count == next.arm_count + 1) news.silence_s = by_receipt_s;
+  if (!first && arm.count == next.arm_count + 1) news.silence_s = std::min(by_receipt_s, now_s - next.cycle_s);
   // Commands do not go on from the last one when that does not lead this arm any more.
   if (next.commanding)
     next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, by_sender_s)) &&
@@ -84,6 +84,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
     if (facts.arm_lost) next.consistent_since_s = now_s;
     facts.arm_consistent = now_s - next.consistent_since_s >= ages.consistent_s - rounding_s;
   }
+  next.cycle_s = now_s;
   const bool none_needed = !inputs.obstacles.message && !model.settings.wait_for_obstacles;
   facts.obstacles_known = inputs.obstacles.message || none_needed;
   facts.obstacles_fresh = none_needed || inputs.obstacles.fresh(now_s, ages.obstacles_s);

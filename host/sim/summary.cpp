@@ -47,7 +47,7 @@ void Summary::add(const Command& command) {
   // Whole periods: in real time the controller's wake-ups jitter. One that is faster has periods of its own.
   const int64_t periods = from_rest ? 1 : (since_us + period_us_ / 2) / period_us_;
   const double change_radps = (command.qd_radps - previous_.qd_radps).cwiseAbs().maxCoeff();
-  const int64_t time_us = periods > 0 ? periods * period_us_ : std::max<int64_t>(1, since_us);
+  const int64_t time_us = periods > 0 ? periods * period_us_ : since_us > 0 ? since_us : period_us_;
   joint_acceleration_radps2_ = std::max(joint_acceleration_radps2_, change_radps / (1e-6 * time_us));
   previous_ = command;
 }
