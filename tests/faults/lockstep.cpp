@@ -109,12 +109,13 @@ void every_arm_state_is_answered_once_command_first(void**) {
     assert_int_equal(play.peer.commands[i].seq, play.peer.commands[i - 1].seq + 1);
 }
 
-/// States that come faster than they are answered are answered all the same, in order.
+/// States that come faster than they are answered are answered all the same, in order; as many as a socket holds with
+/// the answers, should a busy machine not read it for a while.
 void a_burst_of_arm_states_is_answered_one_by_one(void**) {
   Play play("paper");
   std::vector<int64_t> sent;
   JointVector q_rad = JointVector::Zero(7);
-  for (int64_t i = 1; i <= 100; ++i) {
+  for (int64_t i = 1; i <= 40; ++i) {
     sent.push_back(play.utime() + i * kPeriod_us);
     play.peer.send("ARM_STATE", arm_state_message(sent.back(), q_rad, JointVector::Zero(7)));
   }
