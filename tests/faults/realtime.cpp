@@ -84,7 +84,7 @@ void old_obstacles_brake_and_an_old_target_is_held(void**) {
 
 void a_signal_brakes_to_rest_and_ends_with_code_0(void**) {
   for (const char* law : kLaws) {
-    for (const int signal : {SIGTERM, SIGINT}) {
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
       Scene scene(law);
       scene.controller.signal(signal);
       scene.arm.run(0.5);
