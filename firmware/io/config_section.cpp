@@ -33,9 +33,7 @@ Section::Section(std::string file, std::string path, const YAML::Node& node)
 Section Section::of_file(const std::string& file) {
   const std::string text = read_text_file(file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) throw std::runtime_error(file + ": holds more than one YAML document");
-    return Section(file, "", documents.empty() ? YAML::Node() : documents[0]);
+    return Section(file, "", YAML::Load(text));  // LoadAll() never comes back from a lone comma
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(
         fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, on_one_line(error.msg)));

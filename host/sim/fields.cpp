@@ -36,9 +36,7 @@ Fields::Fields(const YAML::Node& map, std::string file, std::string prefix)
 
 Fields Fields::from_file(const std::string& file) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(read_text_file(file));
-    if (documents.size() > 1) throw std::runtime_error(file + ": holds more than one YAML document");
-    return Fields(documents.empty() ? YAML::Node() : documents[0], file, "");
+    return Fields(YAML::Load(read_text_file(file)), file, "");
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(one_line(fmt::format("{}: line {}: {}", file, error.mark.line + 1, error.msg)));
   }
