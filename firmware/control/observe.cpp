@@ -1,6 +1,7 @@
 #include "firmware/control/observe.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sidestep {
 namespace {
@@ -94,7 +95,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   next.skipped_in_a_row = inputs.skipped_cycles > 0 ? next.skipped_in_a_row + inputs.skipped_cycles : 0;
   facts.late = next.skipped_in_a_row >= kMostSkippedCycles;
   facts.stop = inputs.stop;
-  facts.rival = now_s - inputs.foreign_command_s <= ages.consistent_s;
+  facts.rival = std::abs(now_s - inputs.foreign_command_s) <= ages.consistent_s;  // lockstep's clock may start over
   return facts;
 }
 

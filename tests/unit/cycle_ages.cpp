@@ -122,6 +122,18 @@ void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
   }
 }
 
+/// A foreign command of a time to come is one of before the clock started over.
+void a_foreign_command_counts_for_half_a_second_of_either_clock(void**) {
+  for (const double ago_s : {0.0, 0.4, 0.6, -0.01, -100.0}) {
+    ClosedLoop loop = tracking("sidestep");
+    Inputs inputs = loop.receive();
+    inputs.foreign_command_s = loop.now_s() - ago_s;
+    const Result result = step(loop.model, loop.state, inputs, loop.now_s());
+    const bool counts = std::abs(ago_s) < 0.5;
+    check((result.report.mode == Mode::kBrake) == counts, "%g s ago: %s", ago_s, result.report.message);
+  }
+}
+
 void an_arm_whose_clock_stands_still_or_goes_back_is_a_fault(void**) {
   for (const int64_t offset_us : {-10000, -20000, -50000}) {
     ClosedLoop loop = tracking("paper");
@@ -166,6 +178,7 @@ int main() {
       cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
       cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
       cmocka_unit_test(a_silence_of_the_clock_itself_is_judged_as_any_other),
+      cmocka_unit_test(a_foreign_command_counts_for_half_a_second_of_either_clock),
       cmocka_unit_test(an_arm_whose_clock_stands_still_or_goes_back_is_a_fault),
       cmocka_unit_test(target_and_obstacles_are_moved_forward_to_the_present),
   };
