@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "firmware/model/types.h"
 
 namespace sidestep {

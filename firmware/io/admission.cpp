@@ -79,13 +79,12 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
   for (int i = 0; i < value.count; ++i) {
     const obstacle_t& from = message.obstacles[static_cast<size_t>(i)];
     Obstacle& to = value.obstacles[static_cast<size_t>(i)];
-    to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position), quaternion(from.quaternion),
-                           vector(from.size));
+    const auto shape = static_cast<Shape>(from.shape);
+    to = reported_obstacle(shape, vector(from.position), quaternion(from.quaternion), vector(from.size));
     to.id = from.id;
     to.velocity_mps = vector(from.velocity);
     to.angular_velocity_radps = vector(from.angular_velocity);
-    if (!plausible(to)) return reject("obstacles with impossible values");
-    if (from.shape == obstacle_t::SPHERE) to.angular_velocity_radps.setZero();
+    if (!complete(shape, to)) return reject("obstacles with impossible values");
   }
   if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) return false;
   scratch_->jumps.complete(value, obstacles_order_.elapsed_s(), now_s);

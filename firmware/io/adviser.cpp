@@ -1,6 +1,5 @@
 #include "firmware/io/adviser.h"
 
-
 #include "firmware/io/realtime.h"
 
 namespace sidestep {

@@ -30,6 +30,13 @@ void touch_stack() {
   static_cast<void>(stack[0]);
 }
 
+/// Whether so much more could be locked: where all memory is, an allocation fails that would go over the limit.
+bool has_room(size_t bytes) {
+  void* room = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room != MAP_FAILED) munmap(room, bytes);
+  return room != MAP_FAILED;
+}
+
 }  // namespace
 
 double monotonic_s() {
@@ -49,13 +56,6 @@ void sleep_until(double instant_s) {
   until.tv_sec = static_cast<time_t>(std::floor(instant_s));
   until.tv_nsec = static_cast<long>((instant_s - std::floor(instant_s)) * 1e9);
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-}
-
-/// Whether so much more could be locked: where all memory is, an allocation fails that would go over the limit.
-bool has_room(size_t bytes) {
-  void* room = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room != MAP_FAILED) munmap(room, bytes);
-  return room != MAP_FAILED;
 }
 
 bool lock_memory(std::string& why_not) {

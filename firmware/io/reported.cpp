@@ -20,6 +20,12 @@ bool complete(Target& target) {
   return true;
 }
 
+bool complete(Shape shape, Obstacle& obstacle) {
+  if (!plausible(obstacle)) return false;
+  if (shape == Shape::kSphere) obstacle.angular_velocity_radps.setZero();
+  return true;
+}
+
 /// The paper's law is the paper's law and nothing more: it takes obstacles to be where they are said to be.
 Jumps jumps_of(const Settings& settings) {
   return Jumps(settings.obstacle_speed_bound_mps, settings.law == Law::kPaper ? 0.0 : settings.ages.old_place_s);

@@ -13,8 +13,9 @@ enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
 /// An obstacle of that shape at rest; not plausible() when shape, size or turn make no sense. size_m as in obstacle_t.
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& turn, const Vector3& size_m);
 
-/// Whether the target is plausible; if so it is made complete.
+/// Whether what is reported is plausible; if so it is made complete: what does not count is as if nobody had said it.
 bool complete(Target& target);
+bool complete(Shape shape, Obstacle& obstacle);
 
 /// The memory of jumps that the settings ask for.
 Jumps jumps_of(const Settings& settings);

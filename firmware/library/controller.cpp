@@ -67,8 +67,9 @@ Controller::Result result_of(const sidestep::Result& from) {
 Model model_of(const std::string& config_file, const Overrides& overrides, Controller::Foresight foresight) {
   const Config config = load_config(config_file, overrides);
   if (!config.neighbours.listen.empty())
-    throw std::runtime_error(config_file + ": neighbours.listen: this process hears no channels; put the neighbours' "
-                                           "links among the obstacles");
+    throw std::runtime_error(config_file +
+                             ": neighbours.listen: this process hears no channels; put the neighbours' "
+                             "links among the obstacles");
   Model model = config.model;
   if (foresight == Controller::Foresight::kOff) model.settings.foresight.enabled = false;
   return model;
@@ -138,8 +139,7 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
   set.count = count;
   for (int i = 0; i < count; ++i) {
     sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
-    if (!plausible(obstacle)) return false;
-    if (obstacles[i].shape == Shape::kSphere) obstacle.angular_velocity_radps.setZero();
+    if (!complete(static_cast<sidestep::Shape>(obstacles[i].shape), obstacle)) return false;
   }
   inside_->jumps.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
   newest.take_draft(now_s);

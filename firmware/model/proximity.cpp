@@ -1,6 +1,5 @@
 #include "firmware/model/proximity.h"
 
-
 namespace sidestep {
 namespace {
 

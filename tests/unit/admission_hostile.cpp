@@ -150,7 +150,8 @@ void a_message_on_the_wrong_channel_is_rejected(void**) {
 }
 
 /// Every double of every message in turn, but for those that are not used: a sphere's quaternion, and all of an iiwa's
-/// beyond the measured positions and velocities. A sphere's other sizes need only be finite. (So need a capsule's third.)
+/// beyond the measured positions and velocities. A sphere's other sizes need only be finite. (So need a capsule's
+/// third.)
 void no_double_may_be_impossible(void**) {
   const size_t capsule_at = 20, sphere_at = capsule_at + 133, numbers = 5;
   const auto unused = [&](const Channel& channel, size_t at, double bad) {
