@@ -82,7 +82,7 @@ struct Times {
 };
 
 void print(const Scene& scene, const char* what, Times& times) {
-  std::printf("%-10s %5d  %-10s %9.2f %9.2f %9.2f %9.2f", scene.where, scene.spheres, what, times.at(0.5), times.mean(),
+  std::printf("%-11s %5d  %-10s %9.2f %9.2f %9.2f %9.2f", scene.where, scene.spheres, what, times.at(0.5), times.mean(),
               times.at(0.99), times.at(1.0));
 }
 
@@ -162,11 +162,11 @@ void print_scene(const Scene& scene) {
 
 int main() {
   std::printf("CPU time of one control cycle, us\n");
-  std::printf("%-10s %5s  %-10s %9s %9s %9s %9s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
+  std::printf("%-11s %5s  %-10s %9s %9s %9s %9s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
               "times bare", "clearance / law / shield, %");
-  for (const int spheres : {10, 50}) print_scene({"near", spheres, kWorkspace, 4000});
-  for (const int spheres : {500, 4096}) {
-    print_scene({"far", spheres, kRoom, 300});
-    print_scene({"near", spheres, kWorkspace, 300});
+  for (const int spheres : {10, 50, 500, 4096}) {
+    const int cycles = spheres <= 50 ? 4000 : 300;
+    print_scene({"in the room", spheres, kRoom, cycles});
+    print_scene({"in reach", spheres, kWorkspace, cycles});
   }
 }
