@@ -104,8 +104,7 @@ JointVector keep_clear(const Model& model, const Situation& situation, const Arm
                             settings.period_s(), comfort_weight(settings.shield, situation, mode, guided)};
   const VelocityRange lasting =
       lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
-  const TaskJacobian jacobian = tool_jacobian(situation.posture, situation.target.tracks_orientation ? 6 : 3);
-  const Shielded safe = shield(settings.shield, around, lasting, range, jacobian, wish.velocity_radps);
+  const Shielded safe = shield(settings.shield, around, lasting, range, situation.tool_jacobian, wish.velocity_radps);
   state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
   return safe.velocity_radps;
 }
@@ -144,9 +143,9 @@ void remember(const Command& command, const Wish& wish, bool arm_starting, State
   next.commanding = goes_on(next, arm_starting, command.velocity_radps);
 }
 
-void report_tool(const Posture& posture, const ArmState& arm, Report& report) {
-  report.tool_position_m = posture.tool_position;
-  report.tool_velocity_mps = tool_jacobian(posture, 3) * arm.velocity_radps;
+void report_tool(const Situation& situation, Report& report) {
+  report.tool_position_m = situation.posture.tool_position;
+  report.tool_velocity_mps = situation.tool_jacobian.topRows<3>() * situation.velocity_radps;
 }
 
 void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
@@ -188,7 +187,9 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     passed(Stage::kClearance);
     const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
 
-    const Situation situation{model.arm, posture, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
+    const TaskJacobian jacobian = tool_jacobian(posture, target.tracks_orientation ? 6 : 3);
+    const Situation situation{model.arm,          posture, jacobian,  arm.position_rad,
+                              arm.velocity_radps, target,  obstacles, clearance};
     const Guide* guide = guide_to_follow(model, inputs);
     const Wish wish = ask_law(model, situation, next, guide, now_s);
     passed(Stage::kLaw);
@@ -201,7 +202,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     passed(Stage::kGate);
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);
-    report_tool(posture, arm, report);
+    report_tool(situation, report);
     report_clearance(clearance, obstacles, report);
     if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();
     report.shield_correction_radps = (safe - wish.velocity_radps).norm();

@@ -90,8 +90,8 @@ struct Ways {
 
 Ways find_ways(const ShieldRows& rows) {
   Ways ways;
-  for (int i = 0; i < rows.count && ways.count < kMostWays; ++i)
-    if (rows.rows[i].other_bound > 0.0) ways.rows[ways.count++] = i;
+  for (int i = 0; i < rows.size() && ways.count < kMostWays; ++i)
+    if (rows[i].other_bound > 0.0) ways.rows[ways.count++] = i;
   return ways;
 }
 
@@ -100,7 +100,7 @@ ShieldRows turn(const ShieldRows& rows, const Ways& ways, int sides) {
   ShieldRows turned = rows;
   for (int way = 0; way < ways.count; ++way) {
     if (!(sides >> way & 1)) continue;
-    ShieldRow& row = turned.rows[ways.rows[way]];
+    ShieldRow& row = turned[ways.rows[way]];
     row.row = -row.row;
     std::swap(row.bound, row.other_bound);
   }
@@ -108,7 +108,7 @@ ShieldRows turn(const ShieldRows& rows, const Ways& ways, int sides) {
 }
 
 bool is_threatened(const ShieldRows& rows) {
-  return std::any_of(rows.rows.begin(), rows.rows.begin() + rows.count,
+  return std::any_of(rows.begin(), rows.end(),
                      [](const ShieldRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
 }
 

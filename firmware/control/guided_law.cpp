@@ -12,7 +12,7 @@ Wish guided_law(const SidestepGains& gains, const Situation& now, const Guide& g
     return sidestep_law(gains, now, back_radps.cwiseMax(-fastest).cwiseMin(fastest));
   }
   Wish wish{point.velocity_radps + back_radps};
-  wish.tool_velocity_mps = tool_jacobian(now.posture, 3) * wish.velocity_radps;
+  wish.tool_velocity_mps = now.tool_jacobian.topRows<3>() * wish.velocity_radps;
   return wish;
 }
 

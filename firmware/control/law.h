@@ -10,6 +10,7 @@ namespace sidestep {
 struct Situation {
   const Arm& arm;
   const Posture& posture;
+  const TaskJacobian& tool_jacobian;  ///< of the rows that the target has: 3, or 6 with an orientation
   const JointVector& position_rad;    ///< measured
   const JointVector& velocity_radps;  ///< measured
   const Target& target;               ///< moved forward to the present

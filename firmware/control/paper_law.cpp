@@ -9,7 +9,7 @@ namespace sidestep {
 
 Wish paper_law(const PaperGains& gains, double period_s, const Situation& now, const Vector3* planned_mps) {
   const int rows = now.target.tracks_orientation ? 6 : 3;
-  const TaskJacobian jacobian = tool_jacobian(now.posture, rows);
+  const TaskJacobian& jacobian = now.tool_jacobian;
   const Vector3 v_tool = jacobian.topRows<3>() * now.velocity_radps;
   const Vector3& p_tool = now.posture.tool_position;
 

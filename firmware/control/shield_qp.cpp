@@ -1,5 +1,6 @@
 #include "firmware/control/shield_qp.h"
 
+#include <algorithm>
 #include <cmath>
 #include <eiquadprog/eiquadprog-rt.hpp>
 
@@ -52,8 +53,8 @@ struct Problem {
       conditions(kSlacks + tier, joint_capacity + tier) = 1.0;
       offsets[kSlacks + tier] = 0.0;
     }
-    for (int i = 0; i < rows.count; ++i) {
-      const ShieldRow& row = rows.rows[i];
+    for (int i = 0; i < rows.size(); ++i) {
+      const ShieldRow& row = rows[i];
       conditions.row(kRows + i).head(n) = row.row.transpose();
       conditions(kRows + i, joint_capacity + static_cast<int>(row.tier)) = relief(near, row.tier);
       offsets[kRows + i] = -row.bound;
@@ -117,8 +118,8 @@ QpSolution solve_sized(const ShieldRows& rows, const VelocityRange& range, const
 template <int joint_capacity>
 QpSolution solve_for(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
   constexpr int kFewRows = 12, kSomeRows = 28;
-  if (rows.count <= kFewRows) return solve_sized<joint_capacity, kFewRows>(rows, range, near);
-  if (rows.count <= kSomeRows) return solve_sized<joint_capacity, kSomeRows>(rows, range, near);
+  if (rows.size() <= kFewRows) return solve_sized<joint_capacity, kFewRows>(rows, range, near);
+  if (rows.size() <= kSomeRows) return solve_sized<joint_capacity, kSomeRows>(rows, range, near);
   return solve_sized<joint_capacity, kMaxRows>(rows, range, near);
 }
 
@@ -126,9 +127,8 @@ QpSolution solve_for(const ShieldRows& rows, const VelocityRange& range, const N
 bool is_met(const ShieldRows& rows, const VelocityRange& range, const JointVector& wish_radps) {
   if ((wish_radps.array() < range.lower_radps.array()).any() || (wish_radps.array() > range.upper_radps.array()).any())
     return false;
-  for (int i = 0; i < rows.count; ++i)
-    if (rows.rows[i].row.dot(wish_radps) < rows.rows[i].bound) return false;
-  return true;
+  return std::none_of(rows.begin(), rows.end(),
+                      [&](const ShieldRow& row) { return row.row.dot(wish_radps) < row.bound; });
 }
 
 }  // namespace

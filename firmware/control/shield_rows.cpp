@@ -20,11 +20,11 @@ double worst_shortfall(const ShieldRow& row, const VelocityRange& range) {
 void add(const VelocityRange& range, const ShieldRow& row, ShieldRows& rows) {
   const double shortfall = worst_shortfall(row, range);
   if (shortfall <= 0.0) return;
-  if (rows.count < kMaxRows) {
-    rows.rows[rows.count++] = row;
+  if (!rows.is_full()) {
+    rows.add(row);
     return;
   }
-  const auto least = std::min_element(rows.rows.begin(), rows.rows.end(), [&](const auto& a, const auto& b) {
+  const auto least = std::min_element(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
     return worst_shortfall(a, range) < worst_shortfall(b, range);
   });
   if (worst_shortfall(*least, range) < shortfall) *least = row;

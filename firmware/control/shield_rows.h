@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "firmware/control/shield.h"
 
 namespace sidestep {
@@ -20,10 +18,7 @@ struct ShieldRow {
 constexpr int kMaxRows = 56;
 
 /// The rows that can matter within the range of velocities; where there are too many, the most pressing.
-struct ShieldRows {
-  int count = 0;
-  std::array<ShieldRow, kMaxRows> rows;
-};
+using ShieldRows = BoundedList<ShieldRow, kMaxRows>;
 
 /// What the shield asks twice in a cycle.
 struct RowSets {

@@ -60,8 +60,8 @@ JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limi
 
 Wish sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps) {
   const Target& target = now.target;
-  const int rows = target.tracks_orientation ? 6 : 3;
-  const TaskJacobian jacobian = tool_jacobian(now.posture, rows);
+  const TaskJacobian& jacobian = now.tool_jacobian;
+  const Eigen::Index rows = jacobian.rows();
   const Vector3 error_m = target.position_m - now.posture.tool_position;
 
   Wish wish;

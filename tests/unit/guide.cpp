@@ -60,7 +60,7 @@ void behind_its_end_a_guide_is_only_a_preference_and_a_place_to_wait_is_kept(voi
   const JointVector q_rad = test::home_rad(), at_rest = JointVector::Zero(7);
   Target target;
   target.position_m = posture.tool_position;
-  const Situation now{lwa3(), posture, q_rad, at_rest, target, ObstacleView{}, Clearance{}};
+  const Situation now{lwa3(), posture, tool_jacobian(posture, 3), q_rad, at_rest, target, ObstacleView{}, Clearance{}};
   Guide guide = random_guide(random, 2);
   const double after_s = guide.end_s() + 1.0;
   const Wish holding = guided_law(gains, now, guide, after_s);

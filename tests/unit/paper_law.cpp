@@ -88,7 +88,9 @@ class Scene {
     const ObstacleView view{obstacles_->count > 0 ? obstacles_.get() : nullptr, 0.0, 0.0};
     const Clearance clearance = measure_clearance(lwa3(), posture, view, {0.4, 0.0});
     nearest_axis = clearance.nearest_axis;
-    return paper_law(gains, kPeriod_s, {lwa3(), posture, q_rad, qd_radps, target, view, clearance}, planned_mps);
+    const TaskJacobian jacobian = tool_jacobian(posture, target.tracks_orientation ? 6 : 3);
+    return paper_law(gains, kPeriod_s, {lwa3(), posture, jacobian, q_rad, qd_radps, target, view, clearance},
+                     planned_mps);
   }
 
  private:

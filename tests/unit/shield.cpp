@@ -147,8 +147,8 @@ bool within(const VelocityRange& range, const JointVector& velocity_radps) {
 /// By how much a velocity misses the worst hard row; 0 when it meets all.
 double worst_miss(const ShieldRows& rows, const JointVector& velocity_radps, int* which = nullptr) {
   double worst = 0.0;
-  for (int i = 0; i < rows.count; ++i) {
-    const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
+  for (int i = 0; i < rows.size(); ++i) {
+    const ShieldRow& row = rows[i];
     const double miss = row.bound - row.row.dot(velocity_radps);
     if (miss <= worst) continue;
     worst = miss;
@@ -180,7 +180,7 @@ double least_miss(const ShieldRows& rows, const VelocityRange& range, Random& ra
     int worst = -1;
     worst_miss(rows, velocity_radps, &worst);
     if (worst < 0) return 0.0;
-    const JointVector& row = rows.rows[static_cast<size_t>(worst)].row;
+    const JointVector& row = rows[worst].row;
     const double step = span.norm() / (1.0 + i);
     velocity_radps += row * (step / std::max(1e-9, row.norm()));
     velocity_radps = velocity_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
@@ -252,7 +252,7 @@ void with_nothing_near_a_wish_within_range_is_granted_exactly(void**) {
     randomise(scene, random);
     scene.set.count = 0;
     scene.measure();
-    if (scene.hard_rows().count > 0) continue;  // the arm is near itself
+    if (scene.hard_rows().size() > 0) continue;  // the arm is near itself
     for (int i = 0; i < 7; ++i)
       scene.wish_radps[i] = random.uniform(std::max(scene.lasting.lower_radps[i], scene.range.lower_radps[i]),
                                            std::min(scene.lasting.upper_radps[i], scene.range.upper_radps[i]));

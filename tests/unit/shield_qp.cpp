@@ -26,7 +26,7 @@ struct Programme {
     range = {middle_radps - random.joints(joints, 0.1, 1.5), middle_radps + random.joints(joints, 0.1, 1.5)};
     for (int i = random.index(kMaxRows); i > 0; --i) {
       const JointVector row = random.joints(joints, -1, 1);
-      rows.rows[static_cast<size_t>(rows.count++)] = {row, row.dot(middle_radps) - random.uniform(0, 0.5), Tier::kHard};
+      rows.add({row, row.dot(middle_radps) - random.uniform(0, 0.5), Tier::kHard});
     }
   }
 
@@ -39,10 +39,7 @@ struct Programme {
   bool allows(const JointVector& velocity_radps, double rounding) const {
     bool all = ((velocity_radps - range.lower_radps).array() >= -rounding).all() &&
                ((range.upper_radps - velocity_radps).array() >= -rounding).all();
-    for (int i = 0; i < rows.count; ++i) {
-      const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
-      all = all && row.row.dot(velocity_radps) >= row.bound - rounding;
-    }
+    for (const ShieldRow& row : rows) all = all && row.row.dot(velocity_radps) >= row.bound - rounding;
     return all;
   }
 };

@@ -121,8 +121,7 @@ void check_distance_rows(Scene& scene, const NearPair& pair, const Obstacle& obs
     return measure_pair(placed(posture, shape_of(pair.now.shape)), obstacle).distance_m;
   });
   const ShieldRows rows = scene.rows_of(pair);
-  for (int i = 0; i < rows.count; ++i) {
-    const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
+  for (const ShieldRow& row : rows) {
     if (row.tier == Tier::kPass) continue;
     check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.now.distance_m);
     ++seen[row.tier == Tier::kComfort];
@@ -158,15 +157,14 @@ void the_bounds_of_distances_are_barriers(void**) {
     const ShieldRows rows = scene.rows_of(pair);
     const double d = pair.now.distance_m;
     if (d > kSettings.range_m) {
-      assert_int_equal(rows.count, 0);
+      assert_int_equal(rows.size(), 0);
       continue;
     }
     const PointJacobian jacobian = point_jacobian(scene.posture, shape_of(shape).body, pair.now.on_arm);
     if (!can_matter(jacobian.transpose() * pair.now.normal)) continue;
-    assert_int_equal(rows.count, 2);
-    check_near(rows.rows[0].bound, hard_bound(rows.rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
-    check_near(rows.rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)),
-               1e-9);
+    assert_int_equal(rows.size(), 2);
+    check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
+    check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
   }
 }
 
@@ -185,7 +183,7 @@ void an_obstacle_that_comes_asks_for_more_than_one_that_leaves(void**) {
       obstacle.velocity_mps = 0.3 * way * now.normal;
       scene.add(obstacle);
       const ShieldRows rows = scene.rows_of(pair_of(scene.posture, shape, 0, obstacle), true);
-      bounds[way + 1] = rows.count > 0 ? rows.rows[0].bound : -std::numeric_limits<double>::infinity();  // met anyway
+      bounds[way + 1] = rows.size() > 0 ? rows[0].bound : -std::numeric_limits<double>::infinity();  // met anyway
     }
     check(bounds[0] <= bounds[1] && bounds[1] <= bounds[2], "trial %d: %g, %g, %g", trial, bounds[0], bounds[1],
           bounds[2]);
@@ -210,8 +208,7 @@ void rows_of_ways_are_the_slopes_of_the_closest_approach(void**) {
       return predict_approach(link, point, measure_pair(link, point), kSettings.pass_horizon_s).distance_m;
     });
     const ShieldRows rows = scene.rows_of(pair);
-    for (int i = 0; i < rows.count; ++i) {
-      const ShieldRow& row = rows.rows[static_cast<size_t>(i)];
+    for (const ShieldRow& row : rows) {
       if (row.tier != Tier::kPass) continue;
       check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.approach.distance_m);
       ++seen;
@@ -236,11 +233,9 @@ void an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point(void**)
     straight.velocity_mps = pair.velocity_mps;
     straight.angular_velocity_radps.setZero();
     const ShieldRows rows = scene.rows_of(pair), same = scene.rows_of(pair_of(scene.posture, shape, 0, straight));
-    assert_int_equal(rows.count, same.count);
-    for (int i = 0; i < rows.count; ++i)
-      check_near_because(rows.rows[static_cast<size_t>(i)].bound, same.rows[static_cast<size_t>(i)].bound, 1e-9,
-                         "trial %d", trial);
-    seen += rows.count > 0 && std::abs(pair.velocity_mps.dot(pair.now.normal)) > 0.01;
+    assert_int_equal(rows.size(), same.size());
+    for (int i = 0; i < rows.size(); ++i) check_near_because(rows[i].bound, same[i].bound, 1e-9, "trial %d", trial);
+    seen += rows.size() > 0 && std::abs(pair.velocity_mps.dot(pair.now.normal)) > 0.01;
   }
   check(seen > 100, "only %d", seen);
 }
@@ -262,9 +257,9 @@ void rows_of_links_against_each_other_are_their_slopes(void**) {
       const JointVector expected =
           slope(scene.q_rad, [&](const Posture& posture) { return distance(posture).distance_m; });
       if (!can_matter(expected)) continue;
-      assert_int_equal(rows.count, 1);
-      check_near_because(rows.rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
-      check_near(rows.rows[0].bound, hard_bound(rows.rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
+      assert_int_equal(rows.size(), 1);
+      check_near_because(rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
+      check_near(rows[0].bound, hard_bound(rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
       ++seen;
     }
   }
@@ -286,9 +281,8 @@ std::vector<ShieldRow> all_rows(Scene& scene, const std::vector<NearPair>& near,
   std::vector<ShieldRow> all;
   for (const NearPair& pair : near) {
     const ShieldRows rows = scene.rows_of(pair);
-    for (int i = 0; i < rows.count; ++i)
-      if (worst_shortfall(rows.rows[static_cast<size_t>(i)], range) > 0.0)
-        all.push_back(rows.rows[static_cast<size_t>(i)]);
+    for (const ShieldRow& row : rows)
+      if (worst_shortfall(row, range) > 0.0) all.push_back(row);
   }
   return all;
 }
@@ -312,11 +306,10 @@ void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(voi
     scene.clearance.near.clear();
     for (const NearPair& pair : near) scene.clearance.near.add(pair);
     const ShieldRows kept = scene.rows(range);
-    assert_int_equal(kept.count, std::min(kMaxRows, static_cast<int>(all.size())));
+    assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(all.size())));
     double least_kept = 1e9, most_left_out = 0.0;
     for (const ShieldRow& row : all) {
-      const auto end = kept.rows.begin() + kept.count;
-      const bool is_kept = std::any_of(kept.rows.begin(), end, [&](const ShieldRow& one) { return same(one, row); });
+      const bool is_kept = std::any_of(kept.begin(), kept.end(), [&](const ShieldRow& one) { return same(one, row); });
       if (is_kept)
         least_kept = std::min(least_kept, worst_shortfall(row, range));
       else

@@ -16,7 +16,8 @@ const SidestepGains kGains;
 Wish wish_at(const JointVector& q_rad, const Target& target) {
   const Posture posture = forward(lwa3(), q_rad);
   const JointVector at_rest = JointVector::Zero(q_rad.size());
-  return sidestep_law(kGains, {lwa3(), posture, q_rad, at_rest, target, ObstacleView{}, Clearance{}},
+  const TaskJacobian jacobian = tool_jacobian(posture, target.tracks_orientation ? 6 : 3);
+  return sidestep_law(kGains, {lwa3(), posture, jacobian, q_rad, at_rest, target, ObstacleView{}, Clearance{}},
                       away_from_limits(kGains, lwa3().limits, q_rad));
 }
 
