@@ -40,11 +40,12 @@ Wish ask_law(const Model& model, const Situation& situation, const State& state,
   return paper_law(model.settings.paper, model.settings.period_s(), situation, planned);
 }
 
-/// How far the command of a joint has to close in on the measured arm, rad: nothing while it follows. It begins at half
-/// the following error, so that a command that can catch up is never held back by it.
+/// How far the command of a joint has to close in on the measured arm, rad: by what is beyond half the following error,
+/// so that a command that can catch up is never held back by it.
 double catch_up(const Model& model, const State& state, const ArmState& arm, int joint) {
   const double error_rad = arm.position_rad[joint] - state.position_rad[joint];
-  return std::abs(error_rad) > 0.5 * model.settings.following_error_rad ? error_rad : 0.0;
+  const double granted_rad = 0.5 * model.settings.following_error_rad;
+  return error_rad - std::clamp(error_rad, -granted_rad, granted_rad);
 }
 
 /// Where the velocity leads from the last commanded position. Should the arm have fallen too far behind or been moved,
@@ -122,9 +123,11 @@ Command gate(const Model& model, const State& state, const ArmState& arm, const 
   return {lead(model, state, arm, velocity_radps), velocity_radps};
 }
 
-/// A stream of commands runs in every mode that moves the arm, and after a fault until the arm is at rest.
-bool goes_on(const State& state, bool arm_starting, const JointVector& velocity_radps) {
-  if (arm_starting || state.supervision.mode == Mode::kWait) return false;
+/// A stream of commands starts from where the arm is, not from where it was. It runs in every mode that moves the arm,
+/// and after a fault until the arm is at rest.
+bool goes_on(const State& state, const Facts& facts, const JointVector& velocity_radps) {
+  if (facts.arm_starting || state.supervision.mode == Mode::kWait) return false;
+  if (!state.commanding && !facts.arm_fresh) return false;
   if (state.supervision.mode == Mode::kFault) return state.commanding && !velocity_radps.isZero(0.0);
   return true;
 }
@@ -135,12 +138,12 @@ void distrust(double now_s, State& next) {
   next.consistent_since_s = now_s;
 }
 
-void remember(const Command& command, const Wish& wish, bool arm_starting, State& next) {
+void remember(const Command& command, const Wish& wish, const Facts& facts, State& next) {
   next.position_rad = command.position_rad;
   next.velocity_radps = command.velocity_radps;
   next.planning = next.supervision.mode == Mode::kTrack;
   next.planned_mps = wish.tool_velocity_mps;
-  next.commanding = goes_on(next, arm_starting, command.velocity_radps);
+  next.commanding = goes_on(next, facts, command.velocity_radps);
 }
 
 void report_tool(const Situation& situation, Report& report) {
@@ -198,7 +201,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     passed(Stage::kShield);
     if (!safe.allFinite()) distrust(now_s, next);
     result.command = gate(model, next, arm, range, safe, report.limiting);
-    remember(result.command, wish, facts.arm_starting, next);
+    remember(result.command, wish, facts, next);
     passed(Stage::kGate);
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);

@@ -7,6 +7,7 @@ namespace sidestep {
 namespace {
 
 constexpr int kMostSkippedCycles = 3;  // in a row; more than a hiccup
+constexpr double kArmWaits_s = 0.05;   // an arm that hears no command for longer stops by itself
 
 /// Whether an arm can have come from one state to the next in this time. One period and a sensor's noise are granted on
 /// top.
@@ -29,13 +30,6 @@ double longest_gap_s(const Model& model, double limit_s) {
   return std::max(limit_s, 1.5 * model.settings.period_s());
 }
 
-/// From an arm state that comes too late until the commands, braked, are at rest.
-double time_to_rest_s(const Model& model, const State& before) {
-  const double braking_s =
-      before.velocity_radps.cwiseAbs().cwiseQuotient(model.arm.limits.acceleration_radps2).maxCoeff();
-  return longest_gap_s(model, model.settings.ages.arm_state_s) + braking_s;
-}
-
 /// What a new arm state tells about the time since the one before.
 struct ArmNews {
   bool contradicts = false;  ///< no arm gets there in that time
@@ -47,7 +41,7 @@ ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s
   if (arm.count == next.arm_count) return news;
   const bool first = next.arm_count == 0;
   const double by_receipt_s = arm.received_s - next.arm_received_s;
-  const double by_sender_s = static_cast<double>(arm.message->utime - next.arm_utime) * 1e-6;
+  const double by_sender_s = (static_cast<double>(arm.message->utime) - static_cast<double>(next.arm_utime)) * 1e-6;
   const bool gap = by_receipt_s > longest_gap_s(model, model.settings.ages.arm_state_lost_s);
   const bool agrees = first || reachable(model, next, *arm.message, by_sender_s);
   if (first || gap || !agrees) next.consistent_since_s = now_s;
@@ -55,9 +49,7 @@ ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s
   // Were there others in between, it was this side that did not look.
   if (!first && arm.count == next.arm_count + 1) news.silence_s = std::min(by_receipt_s, now_s - next.cycle_s);
   // Commands do not go on from the last one when that does not lead this arm any more.
-  if (next.commanding)
-    next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, by_sender_s)) &&
-                      news.silence_s <= time_to_rest_s(model, next);
+  if (next.commanding) next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, by_sender_s));
   if (speaks_anew(model.settings.start_guard_s, arm, next)) next.arm_started_s = arm.received_s;
   next.arm_count = arm.count;
   next.arm_received_s = arm.received_s;
@@ -72,6 +64,8 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   const Ages& ages = model.settings.ages;
   const double rounding_s = 1e-9;
   Facts facts;
+  // Nor after a pause of this side, in which the arm has begun to stop.
+  if (now_s - next.cycle_s > longest_gap_s(model, kArmWaits_s) + rounding_s) next.commanding = false;
   facts.arm_known = inputs.arm.message != nullptr;
   if (facts.arm_known) {
     const ArmNews news = follow_arm(model, inputs.arm, now_s, next);
@@ -95,7 +89,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   next.skipped_in_a_row = inputs.skipped_cycles > 0 ? next.skipped_in_a_row + inputs.skipped_cycles : 0;
   facts.late = next.skipped_in_a_row >= kMostSkippedCycles;
   facts.stop = inputs.stop;
-  facts.rival = std::abs(now_s - inputs.foreign_command_s) <= ages.consistent_s;  // lockstep's clock may start over
+  facts.rival = now_s - inputs.foreign_command_s <= ages.consistent_s;
   return facts;
 }
 

@@ -54,6 +54,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.movers.obstacles.begin(), from.movers.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
+  arm.utime = state.arm_utime = 0;  // any clock will do
   Forecast forecast;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {

@@ -84,7 +84,7 @@ void Blackbox::attend() {
     last = end_;
     if (!last) sleep_until(monotonic_s() + kLookAround_s);
     if (requested_.exchange(false)) write("request");
-    if (monotonic_s() < quiet_until_s_ || !fault_.exchange(false)) continue;
+    if ((!last && monotonic_s() < quiet_until_s_) || !fault_.exchange(false)) continue;
     write("fault");
     quiet_until_s_ = monotonic_s() + config_.blackbox.seconds;
   }

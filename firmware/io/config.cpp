@@ -68,7 +68,7 @@ void read_shield(Section section, ShieldSettings& shield) {
   section.not_negative("pass_clearance_m", shield.pass_clearance_m);
   section.positive("pass_gain_per_s", shield.pass_gain_per_s);
   section.not_negative("pass_reaction_s", shield.pass_reaction_s);
-  section.not_negative("pass_horizon_s", shield.pass_horizon_s);
+  section.number("pass_horizon_s", shield.pass_horizon_s, 0.0, 10.0);
   section.not_negative("comfort_clearance_m", shield.comfort_clearance_m);
   section.positive("comfort_gain_per_s", shield.comfort_gain_per_s);
   section.positive("comfort_weight", shield.comfort_weight);
@@ -90,7 +90,7 @@ void read_ages(Section section, Ages& ages) {
   section.positive("arm_state_s", ages.arm_state_s);
   section.positive("arm_state_lost_s", ages.arm_state_lost_s);
   section.not_negative("consistent_s", ages.consistent_s);
-  section.not_negative("old_place_s", ages.old_place_s);
+  section.number("old_place_s", ages.old_place_s, 0.0, 10.0);
   if (ages.arm_state_lost_s < ages.arm_state_s) section.fail("arm_state_lost_s", "must not be below arm_state_s");
   section.finish();
 }

@@ -95,6 +95,7 @@ class Lockstep {
     occasion.utime = arm_.mail().message.utime;
     occasion.now_s = now_s_ = static_cast<double>(occasion.utime) * 1e-6;
     occasion.stop = stop_;
+    if (foreign_command_s_ > now_s_) foreign_command_s_ = -HUGE_VAL;  // the clock has started over
     occasion.foreign_command_s = foreign_command_s_;
     occasion.rejected_messages = rejected_;
     occasion.rejected_reason = rejected_reason_;

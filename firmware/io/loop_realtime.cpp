@@ -142,7 +142,8 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   Adviser adviser(config.model, false);
   request(lock_memory(why_not), "locking memory", why_not, limiting);
   // LCM starts a thread at the first subscription; it and the receiver inherit the priority of this one.
-  request(use_fifo(kReceivePriority, why_not), "FIFO scheduling", why_not, limiting);
+  request(use_fifo(kLoopPriority, why_not), "FIFO scheduling", why_not, limiting);
+  use_fifo(kReceivePriority, why_not);
 
   Wire wire(lcm_url, config);
   const auto receiver = std::make_unique<Receiver>(wire, config);

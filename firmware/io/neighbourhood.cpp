@@ -51,6 +51,9 @@ std::optional<Neighbourhood::Whole> Neighbourhood::join(size_t number, const voi
   part.set.count = part.draft.count;
   part.received_s = now_s;
 
+  // A time to come is of a clock that has started over.
+  for (const auto& other : parts_)
+    if (other->received_s > now_s) other->received_s = -HUGE_VAL;
   const double at_s = oldest_s();
   if (!(now_s - at_s <= limit_s_)) return {};
   utime_ = std::max(utime_ + 1, static_cast<int64_t>(now_s * 1e6));

@@ -94,6 +94,23 @@ void a_fault_leaves_a_log_that_replays_bit_for_bit(void**) {
   }
 }
 
+/// Soon after one log another fault waits for company, but not beyond the end.
+void a_fault_just_before_the_end_has_its_log(void**) {
+  Scene scene;
+  for (int fault = 0; fault < 2; ++fault) {
+    scene.arm.arm_speaks = false;
+    assert_true(scene.arm.run_until(Status::FAULT, 2.0));
+    scene.await_log(1);
+    scene.arm.arm_speaks = true;
+    assert_true(scene.arm.run_until(Status::TRACK, 3.0));
+  }
+  scene.controller.signal(SIGTERM);
+  scene.arm.run(0.5);
+  assert_int_equal(scene.controller.wait(2.0), 0);
+  assert_int_equal(logs().size(), 2);
+  for (const std::string& log : logs()) assert_true(agreed(log) > 100);
+}
+
 void a_signal_asks_for_a_log_and_the_arm_moves_on(void**) {
   Scene scene;
   for (size_t count : {1, 2}) {
@@ -192,6 +209,7 @@ void a_folder_that_cannot_be_made_raises_the_flag_until_it_can(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(a_fault_leaves_a_log_that_replays_bit_for_bit, test::kill_processes),
+      cmocka_unit_test_teardown(a_fault_just_before_the_end_has_its_log, test::kill_processes),
       cmocka_unit_test_teardown(a_signal_asks_for_a_log_and_the_arm_moves_on, test::kill_processes),
       cmocka_unit_test_teardown(another_configuration_is_found_out, test::kill_processes),
       cmocka_unit_test_teardown(a_damaged_log_is_one_clear_line, test::kill_processes),

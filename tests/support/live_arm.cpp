@@ -7,6 +7,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPeriod{10};
+constexpr int kTicksToWait = 5;
 
 int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
@@ -20,6 +21,7 @@ JointVector to_joints(const std::vector<double>& values) {
 
 LiveArm::LiveArm(const JointLimits& limits, const JointVector& start_rad, double period_s)
     : commands(limits, period_s),
+      limits_(limits),
       period_s_(period_s),
       position_rad_(start_rad),
       velocity_radps_(JointVector::Zero(start_rad.size())),
@@ -35,8 +37,18 @@ int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
   });
 }
 
+/// The next command has to go on from there.
+void LiveArm::stop_by_itself() {
+  const double tick_s = std::chrono::duration<double>(kPeriod).count();
+  const JointVector change = limits_.acceleration_radps2 * tick_s;
+  velocity_radps_ -= velocity_radps_.cwiseMax(-change).cwiseMin(change);
+  position_rad_ += velocity_radps_ * tick_s;
+  commands.begin(position_rad_, velocity_radps_);
+}
+
 /// The arm is where it was last told to be.
 void LiveArm::follow() {
+  ticks_without_command_ = followed_ < peer.commands.size() ? 0 : ticks_without_command_ + 1;
   for (; followed_ < peer.commands.size(); ++followed_) {
     const joint_command_t& command = peer.commands[followed_];
     const int64_t before = followed_ > 0 ? peer.commands[followed_ - 1].seq : command.seq - 1;
@@ -51,6 +63,7 @@ void LiveArm::follow() {
 
 void LiveArm::tick() {
   const int64_t utime = utime_now() + clock_offset_us;
+  if (ticks_without_command_ >= kTicksToWait) stop_by_itself();
   if (target_speaks) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
   if (obstacles_speak)
     peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));

@@ -9,7 +9,7 @@
 namespace sidestep::test {
 
 /// An ideal arm and a small world in real time, 100 times a second, over LCM; all commands go through the check. What
-/// is sent may be changed at any time.
+/// is sent may be changed at any time. An arm that hears no command for five ticks stops by itself.
 class LiveArm {
  public:
   /// period_s: of the commands.
@@ -34,12 +34,15 @@ class LiveArm {
  private:
   void tick();
   void follow();
+  void stop_by_itself();
   int64_t silent_between(int64_t one, int64_t other) const;
 
+  JointLimits limits_;
   double period_s_;
   JointVector position_rad_, velocity_radps_;
   std::chrono::steady_clock::time_point next_;
   size_t followed_ = 0;
+  int ticks_without_command_ = 0;
   int64_t lost_ = 0;
 };
 

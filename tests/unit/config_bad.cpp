@@ -80,6 +80,8 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"blackbox: {seconds: 0}", "blackbox.seconds"},
       {"foresight: {seed: 1.7}", "foresight.seed"},
       {"blackbox: {seconds: 61}", "blackbox.seconds"},
+      {"ages: {old_place_s: 11}", "ages.old_place_s"},
+      {"shield: {pass_horizon_s: 11}", "shield.pass_horizon_s"},
       {"blackbox: {file: log}", "blackbox.file"},
       {"control: {rate_hz: -100}", "control.rate_hz"},
       {"control: {following_error_rad: 0}", "control.following_error_rad"},

@@ -122,14 +122,42 @@ void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
   }
 }
 
-/// A foreign command of a time to come is one of before the clock started over.
-void a_foreign_command_counts_for_half_a_second_of_either_clock(void**) {
-  for (const double ago_s : {0.0, 0.4, 0.6, -0.01, -100.0}) {
+/// The arm has stopped by itself in the meantime: commands start anew from there, and not before it is heard again.
+void after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is(void**) {
+  for (const char* law : kLaws) {
+    for (const double pause_s : {0.06, 0.15, 2.0}) {
+      for (const bool heard : {false, true}) {
+        ClosedLoop loop = tracking(law);
+        assert_true(loop.speed_radps() > 0.15);
+        Inputs inputs = loop.receive();
+        ArmState arm = *inputs.arm.message;
+        arm.velocity_radps.setZero();
+        const double now_s = loop.state.cycle_s + pause_s;
+        arm.utime = loop.state.arm_utime + std::llround(pause_s * 1e6);
+        if (heard) inputs.arm = {&arm, now_s, loop.state.arm_count + 5};
+        inputs.target.received_s = inputs.obstacles.received_s = now_s;
+        inputs.skipped_cycles = static_cast<int>(pause_s * 100.0) - 1;
+        const Result result = step(loop.model, loop.state, inputs, now_s);
+        check(result.report.mode == (heard           ? Mode::kBrake
+                                     : pause_s < 0.1 ? Mode::kBrake
+                                                     : Mode::kFault),
+              "%s, %g s: %s", law, pause_s, result.report.message);
+        check(result.commanding == heard, "%s, %g s", law, pause_s);
+        if (!heard) continue;
+        check_near(result.command.velocity_radps.norm(), 0.0, 0);
+        check_near(result.command.position_rad, arm.position_rad, 1e-12);
+      }
+    }
+  }
+}
+
+void a_foreign_command_counts_for_half_a_second(void**) {
+  for (const double ago_s : {0.0, 0.4, 0.6, -0.01}) {
     ClosedLoop loop = tracking("sidestep");
     Inputs inputs = loop.receive();
     inputs.foreign_command_s = loop.now_s() - ago_s;
     const Result result = step(loop.model, loop.state, inputs, loop.now_s());
-    const bool counts = std::abs(ago_s) < 0.5;
+    const bool counts = ago_s < 0.5;
     check((result.report.mode == Mode::kBrake) == counts, "%g s ago: %s", ago_s, result.report.message);
   }
 }
@@ -178,7 +206,8 @@ int main() {
       cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
       cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
       cmocka_unit_test(a_silence_of_the_clock_itself_is_judged_as_any_other),
-      cmocka_unit_test(a_foreign_command_counts_for_half_a_second_of_either_clock),
+      cmocka_unit_test(after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is),
+      cmocka_unit_test(a_foreign_command_counts_for_half_a_second),
       cmocka_unit_test(an_arm_whose_clock_stands_still_or_goes_back_is_a_fault),
       cmocka_unit_test(target_and_obstacles_are_moved_forward_to_the_present),
   };

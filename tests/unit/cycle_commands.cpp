@@ -161,6 +161,30 @@ void commands_do_not_run_away_from_an_arm_that_is_held_fast(void**) {
   }
 }
 
+/// As by a hand, at rest and out of reach of the following error: the command goes along, no faster.
+void commands_follow_an_arm_that_is_pushed_without_a_hop(void**) {
+  const double push_rad = 0.05 * 0.01, rounding_rad = 1e-9;
+  for (const char* law : kLaws) {
+    ClosedLoop loop(lwa3_model(law), home_rad());
+    loop.run(1.0);
+    assert_true(loop.mode() == Mode::kHold);
+    JointVector pushed_rad = loop.arm.position_rad, last_rad = pushed_rad;
+    double fastest_rad = 0.0;
+    for (int cycle = 0; cycle < 1000; ++cycle) {
+      pushed_rad[0] += push_rad;
+      loop.arm.position_rad = pushed_rad;
+      loop.arm.velocity_radps.setZero();
+      loop.cycle();
+      const JointVector& command_rad = loop.last.command.position_rad;
+      fastest_rad = std::max(fastest_rad, (command_rad - last_rad).cwiseAbs().maxCoeff());
+      last_rad = command_rad;
+    }
+    const double behind_rad = pushed_rad[0] - last_rad[0], error_rad = loop.model.settings.following_error_rad;
+    check(behind_rad > 0.4 * error_rad && behind_rad < 0.6 * error_rad, "%s: %g rad behind", law, behind_rad);
+    check(fastest_rad <= push_rad + rounding_rad, "%s: %g rad in one cycle", law, fastest_rad);
+  }
+}
+
 std::vector<double> life(const Model& model, unsigned seed) {
   std::vector<double> all;
   Random random(seed);
@@ -197,6 +221,7 @@ int main() {
       cmocka_unit_test(a_measured_velocity_beyond_the_limits_is_not_commanded),
       cmocka_unit_test(an_arm_outside_its_limits_is_led_back_inside),
       cmocka_unit_test(commands_do_not_run_away_from_an_arm_that_is_held_fast),
+      cmocka_unit_test(commands_follow_an_arm_that_is_pushed_without_a_hop),
       cmocka_unit_test(the_same_inputs_give_the_same_commands_bit_for_bit),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -144,6 +144,16 @@ void a_whole_is_as_old_as_its_oldest_part(void**) {
   assert_int_equal(listener.neighbourhood.rejected(), 0);
 }
 
+/// A simulator that begins again: what a neighbour said before counts no more.
+void where_the_clock_starts_over_a_silent_neighbour_is_unknown(void**) {
+  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+  assert_false(listener.hear(0, ball_at(1, {1, 0, 0}, {0, 0, 0}), 100.00));
+  assert_true(listener.hear(1, ball_at(1, {2, 0, 0}, {1, 0, 0}), 100.01));
+  for (const double now_s : {0.01, 0.02, 50.0, 100.0, 100.01, 100.02})
+    assert_false(listener.hear(0, ball_at(static_cast<int64_t>(now_s * 1e6), {1, 0, 0}, {0, 0, 0}), now_s));
+  assert_true(listener.hear(1, ball_at(2, {2, 0, 0}, {1, 0, 0}), 100.03));
+}
+
 void a_bad_message_of_a_neighbour_leaves_the_others_alone(void**) {
   Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS", "MORE"}));
   listener.hear(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0);
@@ -204,6 +214,7 @@ int main() {
       cmocka_unit_test(links_arrive_in_the_base_frame_of_who_listens),
       cmocka_unit_test(all_shapes_arrive_as_they_are),
       cmocka_unit_test(a_whole_is_as_old_as_its_oldest_part),
+      cmocka_unit_test(where_the_clock_starts_over_a_silent_neighbour_is_unknown),
       cmocka_unit_test(a_bad_message_of_a_neighbour_leaves_the_others_alone),
       cmocka_unit_test(more_obstacles_than_a_message_holds_are_no_whole),
       cmocka_unit_test(who_listens_to_nobody_takes_messages_as_they_are),
