@@ -57,10 +57,13 @@ void Jumps::complete(ObstacleSet& set, double elapsed_s, double now_s) {
   before_count_ = set.count;
   for (int n = 0; n < before_count_; ++n) before_[n] = set.obstacles[order_[n]];
 
+  set.old_places = 0;
   for (const OldPlace& place : places_) {
     // A time too far ahead is of a clock that has been set back.
     const bool counts = place.until_s > now_s + kRounding_s && place.until_s <= now_s + memory_s_;
-    if (counts && set.count < kMaxObstacles) set.obstacles[set.count++] = place.obstacle;
+    if (!counts || set.count == kMaxObstacles) continue;
+    set.obstacles[set.count++] = place.obstacle;
+    ++set.old_places;
   }
 }
 

@@ -25,8 +25,7 @@ size_t ring_bytes(const Config& config) {
   const double cycles_per_s = config.model.settings.rate_hz;
   const double bytes_per_s = cycles_per_s * static_cast<double>(sizeof(KeptCycle) + kOtherMessages_bytes) +
                              kUsualSets_hz * kUsualObstacles * kObstacle_bytes;
-  const double seconds = config.blackbox.seconds + config.model.settings.ages.old_place_s;
-  return static_cast<size_t>(seconds * bytes_per_s) + 4 * kObstacle_bytes * kMaxObstacles;
+  return static_cast<size_t>(config.blackbox.seconds * bytes_per_s) + 4 * kObstacle_bytes * kMaxObstacles;
 }
 
 bool is_log(const fs::path& file) {
@@ -59,20 +58,25 @@ Blackbox::~Blackbox() {
   writing_.join();
 }
 
-/// A message is kept once, and again before it would be overwritten while it is still in use.
+/// A message is kept once, and again before it would be overwritten while it is still in use. Returns whether it is
+/// now.
 template <typename Message>
-void Blackbox::keep(Kept kind, const Mail<Message>& mail) {
+bool Blackbox::keep(Kept kind, const Mail<Message>& mail) {
   Last& last = last_[static_cast<size_t>(kind)];
   const bool fades = ring_.written_bytes() - last.at_bytes > ring_.capacity_bytes() / 2;
-  if (mail.count == 0 || (mail.count == last.count && !fades)) return;
+  if (mail.count == 0 || (mail.count == last.count && !fades)) return false;
   last = {mail.count, ring_.written_bytes()};
   ring_.write(static_cast<uint8_t>(kind), mail.bytes.data(), mail.bytes.size());
+  return true;
 }
 
 void Blackbox::keep(const Post& post, const KeptCycle& cycle) {
   keep(Kept::kArmState, post.arm);
   keep(Kept::kTarget, post.target);
-  keep(Kept::kObstacles, post.obstacles);
+  const ObstacleSet& set = post.obstacles.message;
+  if (keep(Kept::kObstacles, post.obstacles) && set.old_places > 0)
+    ring_.write(static_cast<uint8_t>(Kept::kOldPlaces), &set.obstacles[static_cast<size_t>(set.count - set.old_places)],
+                static_cast<size_t>(set.old_places) * sizeof(Obstacle));
   ring_.write(static_cast<uint8_t>(Kept::kCycle), &cycle, sizeof cycle);
   if (cycle.report.mode == Mode::kFault && mode_ != Mode::kFault) fault_ = true;
   mode_ = cycle.report.mode;

@@ -24,7 +24,7 @@ class Blackbox {
 
  private:
   template <typename Message>
-  void keep(Kept kind, const Mail<Message>& mail);
+  bool keep(Kept kind, const Mail<Message>& mail);
   void attend();
   void write(const std::string& reason);
 

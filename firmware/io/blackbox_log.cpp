@@ -30,6 +30,7 @@ void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
   for (records.rewind(); records.next(record);) {
     if (record.kind != static_cast<uint8_t>(Kept::kCycle)) {
       messages[record.kind] = record;
+      if (record.kind == static_cast<uint8_t>(Kept::kObstacles)) messages[static_cast<size_t>(Kept::kOldPlaces)] = {};
       seen[record.kind] = true;
       continue;
     }
@@ -66,7 +67,9 @@ class Log {
     const Moment& moment = cycle.moment;
     write_new(channels_.arm_state, moment.inputs.arm, messages, Kept::kArmState);
     write_new(channels_.target, moment.inputs.target, messages, Kept::kTarget);
-    write_new(channels_.obstacles, moment.inputs.obstacles, messages, Kept::kObstacles);
+    const Record& old_places = messages[static_cast<size_t>(Kept::kOldPlaces)];
+    if (write_new(channels_.obstacles, moment.inputs.obstacles, messages, Kept::kObstacles) && old_places.size > 0)
+      write(kOldPlacesChannel, moment.inputs.obstacles.received_s, Packet{old_places.bytes, old_places.size});
     MomentImage image;
     to_image(moment, image);
     write(kMomentChannel, moment.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
@@ -80,13 +83,14 @@ class Log {
   }
 
  private:
-  /// A message that is long in use stands in the ring again and again, in the log once.
+  /// A message that is long in use stands in the ring again and again, in the log once. Returns whether it is new.
   template <typename Message>
-  void write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, Kept kind) {
+  bool write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, Kept kind) {
     const auto k = static_cast<size_t>(kind);
-    if (latest.count == written_[k]) return;
+    if (latest.count == written_[k]) return false;
     written_[k] = latest.count;
     write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
+    return true;
   }
 
   [[noreturn]] void give_up() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
@@ -122,7 +126,7 @@ int64_t write_blackbox_log(const std::string& file, const Config& config, const 
                            RecordRing::Copy& records) {
   Moment newest;
   for_each_cycle(records, -HUGE_VAL, [&](const KeptCycle& cycle, const Messages&) { newest = cycle.moment; });
-  const double since_s = newest.now_s - config.blackbox.seconds - config.model.settings.ages.old_place_s;
+  const double since_s = newest.now_s - config.blackbox.seconds;
   int64_t cycles = 0;
   for_each_cycle(records, since_s, [&](const KeptCycle&, const Messages&) { ++cycles; });
 

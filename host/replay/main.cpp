@@ -14,8 +14,7 @@ int replay(const std::string& file, const std::string& config_file) {
   BlackboxLog log(file);
   const Config config = load_config(config_file.empty() ? log.config_file() : config_file, log.overrides());
   const Comparison found = log.replay(config);
-  fmt::print("{} cycles before a {}, {} of them to lead in, {} commands: ", found.cycles, log.reason(), found.led_in,
-             found.commands);
+  fmt::print("{} cycles before a {}, {} commands: ", found.cycles, log.reason(), found.commands);
   if (found.different == 0) {
     fmt::print("all agree bit for bit\n");
     return kAgrees;

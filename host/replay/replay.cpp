@@ -30,9 +30,11 @@ struct Held {
   Bytes next;
 };
 
-/// For an admission that takes what was admitted already: nothing of it is out of order.
-Settings in_any_order(Settings settings) {
+/// For an admission that takes what was admitted already: nothing of it is out of order, and the log knows all old
+/// places.
+Settings once_more(Settings settings) {
   settings.ages.arm_state_lost_s = settings.ages.target_s = settings.ages.obstacles_s = -1.0;
+  settings.ages.old_place_s = 0.0;
   return settings;
 }
 
@@ -41,7 +43,7 @@ class Rerun {
  public:
   explicit Rerun(const Config& config)
       : config_(config),
-        admission_(config.model.arm.joints, in_any_order(config.model.settings), false, config.dialect),
+        admission_(config.model.arm.joints, once_more(config.model.settings), false, config.dialect),
         encoder_(config.model.arm, config.dialect),
         obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
 
@@ -51,6 +53,7 @@ class Rerun {
     if (event.channel == channels.arm_state) arm_.next = bytes_of(event);
     if (event.channel == channels.target) target_.next = bytes_of(event);
     if (event.channel == channels.obstacles) obstacles_->next = bytes_of(event);
+    if (event.channel == kOldPlacesChannel) old_places_ = bytes_of(event);
     if (event.channel == kMomentChannel) return cycle(event);
     if (event.channel == channels.arm_command) compare(bytes_of(event));
     return "";
@@ -69,12 +72,9 @@ class Rerun {
     Inputs& inputs = moment.inputs;
     if (!put(arm_, inputs.arm) || !put(target_, inputs.target) || !put(*obstacles_, inputs.obstacles))
       return "a cycle whose messages are missing or not admitted";
+    if (!put_old_places(obstacles_->message)) return "old places that are none";
     if (inputs.guide) inputs.guide = &moment.guide;
-    if (found_.cycles++ == 0) lead_in_ends_s_ = lead_in_ends_s(moment);
-    leading_in_ = moment.now_s < lead_in_ends_s_;
-    if (leading_in_ || !chained_) state_ = moment.state;
-    chained_ = !leading_in_;
-    found_.led_in += leading_in_;
+    if (found_.cycles++ == 0) state_ = moment.state;
     const Result result = step(config_.model, state_, inputs, moment.now_s);
     state_ = result.next;
     seq_ = moment.seq;
@@ -83,13 +83,8 @@ class Rerun {
     if (result.command.position_rad.size() == 0) return "";
     const Packet packet = encoder_.encode(result.command, moment.utime, moment.seq);
     answer_ = Bytes(packet.bytes, packet.bytes + packet.size);
-    if (result.commanding && !leading_in_) expected_ = answer_;
+    if (result.commanding) expected_ = answer_;
     return "";
-  }
-
-  /// Old places of obstacles that jumped before the log are not in it, unless it goes back to the start.
-  double lead_in_ends_s(const Moment& first) const {
-    return first.seq == 1 ? first.now_s : first.now_s + config_.model.settings.ages.old_place_s;
   }
 
   /// The log holds what was admitted; it is admitted again as having been received when it was, to the last bit.
@@ -103,8 +98,17 @@ class Rerun {
     return held.any;
   }
 
+  /// Behind the set that they came with.
+  bool put_old_places(ObstacleSet& set) {
+    const size_t count = old_places_.size() / sizeof(Obstacle), room = static_cast<size_t>(kMaxObstacles - set.count);
+    if (old_places_.size() % sizeof(Obstacle) != 0 || count > room) return false;
+    std::memcpy(static_cast<void*>(set.obstacles.data() + set.count), old_places_.data(), old_places_.size());
+    set.count += static_cast<int>(count);
+    old_places_.clear();
+    return true;
+  }
+
   void compare(const Bytes& command) {
-    if (leading_in_) return;
     ++found_.commands;
     if (command != answer_) count_difference();
     expected_.reset();
@@ -120,10 +124,9 @@ class Rerun {
   Held<ArmState> arm_;
   Held<Target> target_;
   std::unique_ptr<Held<ObstacleSet>> obstacles_;
+  Bytes old_places_;
   State state_;
   int64_t seq_ = 0;
-  double lead_in_ends_s_ = 0.0;
-  bool leading_in_ = false, chained_ = false;
   Bytes answer_;                   ///< the command of the cycle last run
   std::optional<Bytes> expected_;  ///< the same, while the log has yet to show it
   Comparison found_;

@@ -11,8 +11,7 @@ namespace sidestep {
 /// What running the cycles of a blackbox log again has shown.
 struct Comparison {
   int64_t cycles = 0;     ///< run
-  int64_t led_in = 0;     ///< of them at first, not compared: what obstacles did before the log may count in them
-  int64_t commands = 0;   ///< that the log holds from then on
+  int64_t commands = 0;   ///< that the log holds
   int64_t different = 0;  ///< cycles with another command, or one where there was none, or none where there was one
   int64_t first_different_seq = 0;
 };
@@ -29,8 +28,8 @@ class BlackboxLog {
   Overrides overrides() const;
   std::string reason() const;
 
-  /// Runs step() over all cycles, from the state that the first one behind the lead-in was given on, and compares the
-  /// commands byte by byte. To be called once.
+  /// Runs step() over all cycles, from the state that the first one was given on, and compares the commands byte by
+  /// byte. To be called once.
   Comparison replay(const Config& config);
 
  private:
