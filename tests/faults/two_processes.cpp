@@ -45,7 +45,7 @@ std::string play(const std::string& scenario, const std::string& law, bool locks
     sim.emplace_back("--lockstep");
   }
   Process the_controller(controller), the_sim(sim);
-  const int code = the_sim.wait(30.0);
+  const int code = the_sim.wait(300.0);  // a build with sanitizers takes its time
   check(code == (held ? 0 : 1), "%s, law %s: the simulator's code is %d: %s", scenario.c_str(), law.c_str(), code,
         the_sim.output().c_str());
   the_controller.signal(SIGTERM);
