@@ -1,5 +1,6 @@
 """Sidestep's channels for the scripts: their types, and what was last heard on each."""
 import math
+import re
 import select
 import struct
 import sys
@@ -38,6 +39,11 @@ def finite(text):
     if not math.isfinite(value := float(text)):
         raise ValueError(f"{text} is not a finite number")
     return value
+
+
+def words():
+    """The command line for argparse: a blank goes before -1e-3 and -1,0,2, which it would take for options."""
+    return [f" {word}" if re.match(r"-[\d.]", word) else word for word in sys.argv[1:]]
 
 
 class Newest(dict):

@@ -41,11 +41,21 @@ def from_csv(file):
     """Columns t_s, id, x_m, y_m, z_m, radius_m: spheres on straight lines from row to row, at rest after the last."""
     tracks = {}
     with open(file, newline="") as stream:
-        for row in csv.DictReader(stream):
-            t_s, *place = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
-            tracks.setdefault(int(row["id"]), []).append((t_s, place))
+        rows = csv.DictReader(stream)
+        for row in rows:
+            try:
+                t_s, *place = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
+                tracks.setdefault(id_of(row["id"]), []).append((t_s, place))
+            except (TypeError, ValueError) as error:
+                raise ValueError(f"{file}, line {rows.line_num}: {error}") from None
     tracks = {number: sorted(track) for number, track in tracks.items()}
     return lambda t: [sphere(number, *on_track(track, t)) for number, track in tracks.items()]
+
+
+def id_of(text):
+    if not -2**31 <= (number := int(text)) < 2**31:
+        raise ValueError(f"id {number} has more than 32 bits")
+    return number
 
 
 def on_track(track, t):

@@ -29,27 +29,37 @@ def numbers(text):
     return values + [0.0] * (7 - len(values))
 
 
-def crowd_of(arguments, spheres):
-    if arguments.csv:
+def count(text):
+    if (number := int(text)) < 0:
+        raise argparse.ArgumentTypeError(f"{number} is below 0")
+    return number
+
+
+def crowd_of(arguments):
+    spheres = [numbers(text) for text in arguments.spheres]
+    if arguments.csv is None and arguments.random is None and not arguments.person:
+        return crowds.straight(spheres)
+    if spheres:  # or they would not be sent, which says that they are not there
+        raise ValueError("spheres do not go together with --csv, --random or --person")
+    if arguments.csv is not None:
         return crowds.from_csv(arguments.csv)
-    if arguments.random:
-        return crowds.wandering(arguments.random, arguments.seed)
-    return crowds.walking() if arguments.person else crowds.straight([numbers(text) for text in spheres])
+    return crowds.walking() if arguments.person else crowds.wandering(arguments.random, arguments.seed)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      usage="%(prog)s [-h] [options] [x,y,z,radius[,vx,vy,vz] ...]",
                                      epilog="Centre and radius in m, velocity in m/s (default 0).")
+    parser.add_argument("spheres", nargs="*", help=argparse.SUPPRESS)
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--csv", metavar="FILE", help="spheres by columns t_s, id, x_m, y_m, z_m, radius_m")
-    kind.add_argument("--random", type=int, metavar="N", help="N spheres that wander around the arm")
+    kind.add_argument("--random", type=count, metavar="N", help="N spheres that wander around the arm")
     kind.add_argument("--person", action="store_true", help="somebody who walks past the arm, to and fro, as capsules")
     parser.add_argument("--seed", type=int, default=1, help="of the random ones (default %(default)s)")
     bus.add_lcm_url(parser)
-    arguments, spheres = parser.parse_known_args()  # so that a sphere may begin with a minus
+    arguments = parser.parse_intermixed_args(bus.words())
     try:
-        crowd = crowd_of(arguments, spheres)
+        crowd = crowd_of(arguments)
     except KeyError as error:
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:

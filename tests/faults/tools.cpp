@@ -37,6 +37,12 @@ void a_log_becomes_one_page_that_needs_no_network(void**) {
 void a_log_replays_with_lcm_logplayer(void**) {
   holds("log_replays");
 }
+void coordinates_are_sent_as_they_were_typed(void**) {
+  holds("coordinates");
+}
+void what_cannot_be_done_is_refused_in_one_line(void**) {
+  holds("refusals");
+}
 void hostile_bytes_are_no_message(void**) {
   holds("hostile_bytes");
 }
@@ -54,6 +60,8 @@ int main() {
       cmocka_unit_test_teardown(a_rotation_survives_the_way_to_a_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(what_cannot_be_done_is_refused_in_one_line, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_no_message, sidestep::test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

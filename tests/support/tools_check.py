@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Checks of the scripts in host/tools; a wrong one ends with an assertion."""
 import argparse
+import contextlib
+import io
 import math
 import random
 import re
@@ -10,6 +12,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -21,6 +24,7 @@ import crowds
 import geometry
 import report
 import runs
+import send_obstacles
 import send_target
 import side
 
@@ -135,6 +139,49 @@ def log_replays():
     assert heard[-1]["ARM_STATE"].joint_position == played[-1]["ARM_STATE"].joint_position
 
 
+def sent(script, *words):
+    """What a script that is called so sends at first."""
+    heard = []
+    with mock.patch.multiple(script, send=lambda motion, _url: heard.append(motion(0.0))), \
+            mock.patch.object(sys, "argv", [script.__name__, *words]):
+        script.main()
+    return heard[0]
+
+
+def refusal(script, *words):
+    """Exit code and last line of a script that is called so."""
+    said = io.StringIO()
+    with contextlib.redirect_stderr(said), mock.patch.object(sys, "argv", [script.__name__, *map(str, words)]):
+        try:
+            script.main()
+        except SystemExit as end:
+            return (1, end.code) if isinstance(end.code, str) else (end.code, said.getvalue().splitlines()[-1])
+
+
+def coordinates():
+    """Numbers with a minus, with an exponent, among options and after -- arrive as they were typed."""
+    for words in (("-0.3,0,1,.1",), ("--", "-0.3,0,1,.1"), ("--seed", "-2", "-3e-1,0,1,.1")):
+        (sphere,) = sent(send_obstacles, *words)
+        assert sphere.position == [-0.3, 0, 1] and sphere.size[0] == 0.1, (words, sphere.position)
+    assert len(sent(send_obstacles, "1,0,1,.1", "--seed", "2", "-1,0,1,.1")) == 2
+    assert [len(sent(send_obstacles, *words)) for words in ((), ("--random", "3"))] == [0, 3]
+
+
+def refusals():
+    """What cannot be done is refused in one line with a reason, and nothing is sent instead."""
+    with tempfile.TemporaryDirectory() as name:
+        rows = Path(name) / "rows.csv"
+        rows.write_text(f"t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,0.1\n0,{2**31},0.5,0,0,0.1\n")
+        for script, words, code, reason in (
+                (send_obstacles, ["--random", "-3"], 2, "-3 is below 0"),
+                (send_obstacles, ["--random", "2", "1,0,1,.1"], 2, "spheres do not go together"),
+                (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres do not go together"),
+                (send_obstacles, ["--csv", ""], 2, "No such file"),
+                (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}")):
+            said = refusal(script, *words)
+            assert said[0] == code and reason in said[1], (words, said)
+
+
 def hostile_bytes():
     """What is not a message of its channel is nothing, whatever it is."""
     chance = random.Random(1)
@@ -146,7 +193,8 @@ def hostile_bytes():
 
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
-                                              surroundings, log_becomes_page, log_replays, hostile_bytes)}
+                                              surroundings, log_becomes_page, log_replays, coordinates,
+                                              refusals, hostile_bytes)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
