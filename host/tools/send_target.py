@@ -5,7 +5,7 @@ import curses
 import math
 import time
 
-from bus import add_lcm_url, finite, network, target_t
+from bus import add_lcm_url, finite, network, target_t, words
 
 STEP_M = 0.02  # of a key
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
@@ -73,7 +73,7 @@ def parsed():
     way.add_argument("--keys", action="store_true", help="move it with the arrow keys, + and -")
     parser.add_argument("--period", type=positive, default=8.0, metavar="S", help="of a path (default %(default)g)")
     add_lcm_url(parser)
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words())
     if len(arguments.numbers) not in (3, 6):
         parser.error("three numbers for the position, or six with the velocity")
     return arguments

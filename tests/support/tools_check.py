@@ -164,6 +164,7 @@ def coordinates():
         (sphere,) = sent(send_obstacles, *words)
         assert sphere.position == [-0.3, 0, 1] and sphere.size[0] == 0.1, (words, sphere.position)
     assert len(sent(send_obstacles, "1,0,1,.1", "--seed", "2", "-1,0,1,.1")) == 2
+    assert sent(send_target, "-1e-3", "0.4", "-.7", "0", "-2e-1", "0")[1] == [0, -0.2, 0]
     assert [len(sent(send_obstacles, *words)) for words in ((), ("--random", "3"))] == [0, 3]
 
 
