@@ -1,15 +1,17 @@
 """Where an arm's joints and link shapes are: the chain of a URDF, for drawing."""
+import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import yaml
 
 import bus
+import runs
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "firmware/config/lwa3.yaml"
+ROBOT = ("urdf", "base", "tip")
 
 
 def vector(joint, tag, attribute, default=(0, 0, 0)):
@@ -40,13 +42,16 @@ class Shape(NamedTuple):
 
 
 def path(urdf, base, tip):
-    """The joint elements from base to tip, and the link elements by name."""
-    robot = ElementTree.parse(urdf).getroot()
+    """The joint elements from base to tip, and the link elements by name; or one line and exit code 1."""
+    try:
+        robot = ElementTree.parse(urdf).getroot()
+    except (OSError, ElementTree.ParseError) as error:
+        sys.exit(f"{urdf}: {error}")
     parents = {joint.find("child").get("link"): joint for joint in robot.findall("joint")}
     joints, link = [], tip
     while link != base:
         if link not in parents:
-            raise ValueError(f"{urdf}: no chain from {base} to {tip}")
+            sys.exit(f"{urdf}: no chain from {base} to {tip}")
         joints.insert(0, parents[link])
         link = parents[link].find("parent").get("link")
     return joints, {link.get("name"): link for link in robot.findall("link")}
@@ -126,18 +131,33 @@ def turn_of(quaternion):
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
+def section(config, name):
+    """What the configuration says there, which may be nothing; or one line and exit code 1."""
+    try:
+        said = runs.load(config)
+    except runs.RunFailed as error:
+        sys.exit(str(error))
+    said = said.get(name) or {} if isinstance(said, dict) else said
+    if not isinstance(said, dict):
+        sys.exit(f"{config}: not a configuration")
+    return said
+
+
 def robot_of(config, arguments):
-    """(URDF, base, tip): the configuration's, and over it what the arguments say."""
-    said = yaml.safe_load(config.read_text())["robot"]
+    """(URDF, base, tip): the configuration's, and over it what the arguments say; or one line and exit code 1."""
+    said = section(config, "robot")
+    for name in ROBOT:
+        if not (getattr(arguments, name) or said.get(name)):
+            sys.exit(f"{config}: robot has no {name}, and there is no --{name}")
     return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
 
 
 def channels_of(config):
     """Name on the network -> one of bus.TYPES, as the configuration names them."""
-    said = yaml.safe_load(config.read_text()).get("channels") or {}
+    said = section(config, "channels")
     return {said.get(name.lower(), name): name for name in bus.TYPES}
 
 
 def add_robot(parser):
-    for name in ("urdf", "base", "tip"):
+    for name in ROBOT:
         parser.add_argument(f"--{name}", help="over the configuration's")

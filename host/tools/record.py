@@ -3,6 +3,7 @@
 import argparse
 import select
 import signal
+import sys
 import time
 
 import lcm
@@ -12,7 +13,7 @@ import bus
 
 def record(file, channels, lcm_url):
     """Returns the number of messages written."""
-    wire, log, written = bus.network(lcm_url), lcm.EventLog(file, "w", overwrite=True), 0
+    wire, written = bus.network(lcm_url), 0
 
     def keep(channel, data):
         nonlocal written
@@ -20,7 +21,10 @@ def record(file, channels, lcm_url):
         written += 1
 
     for channel in channels:
-        wire.subscribe(channel, keep).set_queue_capacity(1000)
+        if (heard := wire.subscribe(channel, keep)) is None:
+            sys.exit(f"cannot listen to '{channel}': not a regular expression")
+        heard.set_queue_capacity(1000)
+    log = lcm.EventLog(file, "w", overwrite=True)  # not before all is well: it replaces an old one
     try:
         while True:
             select.select([wire], [], [])  # waits where Ctrl-C is heard
@@ -39,7 +43,7 @@ def main():
     for stop in (signal.SIGINT, signal.SIGTERM):  # a background job is born deaf to the first
         signal.signal(stop, signal.default_int_handler)
     try:
-        open(arguments.log, "wb").close()
+        open(arguments.log, "ab").close()
     except OSError as error:
         parser.error(str(error))
     print(f"{record(arguments.log, arguments.channels, arguments.lcm_url)} messages in {arguments.log}")

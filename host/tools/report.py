@@ -139,8 +139,7 @@ def main():
         robot, channels = arm.robot_of(config, arguments), arm.channels_of(config)
         arguments.output.write_text(page(data_of(arguments.log, robot, channels)))
     except (NoRun, runs.RunFailed, OSError, ValueError) as error:
-        print(f"report.py: {error}", file=sys.stderr)
-        sys.exit(2)
+        sys.exit(f"report.py: {error}")
     print(f"wrote {arguments.output} ({arguments.output.stat().st_size / 1e6:.1f} MB)")
 
 

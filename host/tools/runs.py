@@ -43,7 +43,7 @@ def load(file):
     """A YAML file as a dict."""
     try:
         return yaml.safe_load(Path(file).read_text())
-    except (OSError, yaml.YAMLError) as error:
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise RunFailed(f"{file}: {' '.join(str(error).split())}") from None
 
 

@@ -3,6 +3,7 @@
 import argparse
 import curses
 import math
+import sys
 import time
 
 from bus import add_lcm_url, finite, network, target_t, words
@@ -76,6 +77,8 @@ def parsed():
     arguments = parser.parse_args(words())
     if len(arguments.numbers) not in (3, 6):
         parser.error("three numbers for the position, or six with the velocity")
+    if arguments.keys and not (sys.stdin.isatty() and sys.stdout.isatty()):
+        parser.error("--keys needs a terminal")
     return arguments
 
 

@@ -22,11 +22,13 @@ import arm
 import bus
 import crowds
 import geometry
+import record
 import report
 import runs
 import send_obstacles
 import send_target
 import side
+import view
 
 STEP_S = 1e-4
 LWA3 = (ROOT / "urdf/lwa3.urdf", "base_link", "tool")
@@ -143,7 +145,7 @@ def sent(script, *words):
     """What a script that is called so sends at first."""
     heard = []
     with mock.patch.multiple(script, send=lambda motion, _url: heard.append(motion(0.0))), \
-            mock.patch.object(sys, "argv", [script.__name__, *words]):
+            mock.patch.object(sys, "argv", ["", *words]):
         script.main()
     return heard[0]
 
@@ -151,7 +153,7 @@ def sent(script, *words):
 def refusal(script, *words):
     """Exit code and last line of a script that is called so."""
     said = io.StringIO()
-    with contextlib.redirect_stderr(said), mock.patch.object(sys, "argv", [script.__name__, *map(str, words)]):
+    with contextlib.redirect_stderr(said), mock.patch.multiple(sys, argv=["", *map(str, words)], stdin=io.StringIO()):
         try:
             script.main()
         except SystemExit as end:
@@ -173,14 +175,29 @@ def refusals():
     with tempfile.TemporaryDirectory() as name:
         rows = Path(name) / "rows.csv"
         rows.write_text(f"t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,0.1\n0,{2**31},0.5,0,0,0.1\n")
+        no_robot, log = Path(name) / "no-robot.yaml", Path(name) / "old.lcmlog"
+        no_robot.write_text("rate_hz: 100\n")
+        log.write_text("old")
+        nonsense = Path(name) / "nonsense"  # neither YAML nor XML
+        nonsense.write_text("a: b: c\n")
         for script, words, code, reason in (
                 (send_obstacles, ["--random", "-3"], 2, "-3 is below 0"),
                 (send_obstacles, ["--random", "2", "1,0,1,.1"], 2, "spheres do not go together"),
                 (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres do not go together"),
                 (send_obstacles, ["--csv", ""], 2, "No such file"),
-                (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}")):
+                (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}"),
+                (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
+                (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "listen to '('"),
+                (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),
+                (report, [log, "--config", no_robot], 1, "robot has no urdf"),
+                (report, [log, "--urdf", nonsense], 1, f"{nonsense}: syntax error"),
+                (view, ["--config", "/nonexistent"], 1, "No such file"),
+                (view, ["--config", nonsense], 1, f"{nonsense}: mapping")):
             said = refusal(script, *words)
-            assert said[0] == code and reason in said[1], (words, said)
+            assert said[0] == code and reason in said[1] and "\n" not in said[1], (words, said)
+        assert log.read_text() == "old"
+        robot = dict(urdf="arm.urdf", base="base", tip="tool")
+        assert arm.robot_of(no_robot, argparse.Namespace(**robot)) == tuple(robot.values())
 
 
 def hostile_bytes():
