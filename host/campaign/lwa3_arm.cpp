@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "host/campaign/config_name.h"
 #include "host/campaign/family.h"
 
 namespace sidestep::campaign {
@@ -74,7 +75,7 @@ Limits Lwa3Arm::limits(const Family& family) const {
 
 ArmSource Lwa3Arm::source(const Family& family) const {
   return {"urdf/lwa3.urdf", "base_link", "tool",
-          family.dodge ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml"};
+          config_name(family.dodge ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml")};
 }
 
 const JudgeArm& lwa3_arm() {

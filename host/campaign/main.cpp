@@ -8,6 +8,7 @@
 
 #include "firmware/io/config.h"
 #include "firmware/io/find_file.h"
+#include "host/campaign/config_name.h"
 #include "host/campaign/replay.h"
 #include "host/campaign/runner.h"
 #include "host/campaign/table.h"
@@ -89,9 +90,7 @@ std::vector<Task> tasks_of(const Options& options) {
 }
 
 std::string default_config() {
-  for (const char* name : {"firmware/config/lwa3.yaml", "config/lwa3.yaml"})
-    if (const std::string found = find_file(name); !found.empty()) return found;
-  throw std::runtime_error("--config: no firmware/config/lwa3.yaml here or above, nor one that is installed");
+  return find_file(config_name("firmware/config/lwa3.yaml"));
 }
 
 /// The tables on standard output, and the rows where they are wanted.
