@@ -32,8 +32,8 @@ class Arm::Builder {
   Builder(Arm& arm, const std::string& file) : arm_(arm), file_(file), model_(read_urdf(file)) {}
 
   void build(const std::string& base, const std::string& tip) {
-    const urdf::Link* base_link = link_named(base);
-    for (const urdf::Link* link = link_named(tip); link != base_link; link = link->getParent().get()) {
+    base_link_ = link_named(base);
+    for (const urdf::Link* link = link_named(tip); link != base_link_; link = link->getParent().get()) {
       if (!link->getParent()) fail(fmt::format("link '{}' is not below link '{}'", tip, base));
       check(*link->parent_joint);
       chain_.push_back(link);
@@ -41,11 +41,11 @@ class Arm::Builder {
     model_->root_link_->inertial.reset();  // KDL has no place for it and would warn
     if (!kdl_parser::treeFromUrdfModel(*model_, tree_)) fail("KDL cannot take it over");
     KDL::Frame base_from_top;
-    const urdf::Link* top = base_link;
+    const urdf::Link* top = base_link_;
     for (; is_fixed(*top); top = top->getParent().get()) {
       base_from_top = base_from_top * segment_of(*top).pose(0.0).Inverse();
     }
-    add(*top, -1);
+    add(*top, -1, top == base_link_);
     arm_.bodies_.front().base_from_body = base_from_top;
     if (arm_.joints_ < 1) fail(fmt::format("no joint between '{}' and '{}'", base, tip));
     // Every chain link was added, the tip among them.
@@ -67,10 +67,11 @@ class Arm::Builder {
 
   bool on_chain(const urdf::Link& link) const { return std::count(chain_.begin(), chain_.end(), &link) > 0; }
 
-  void add(const urdf::Link& link, int parent) {
+  // Of the arm are the base and all below it; what it stands on is there as far as it is fixed.
+  void add(const urdf::Link& link, int parent, bool of_arm) {
     const int index = static_cast<int>(arm_.bodies_.size());
     Body body{segment_of(link), parent, -1, parent >= 0 && arm_.bodies_[parent].moving, KDL::Frame::Identity()};
-    if (parent >= 0 && !is_fixed(link)) {
+    if (on_chain(link) && !is_fixed(link)) {
       body.joint = arm_.joints_++;
       body.moving = true;
     }
@@ -78,7 +79,7 @@ class Arm::Builder {
     arm_.bodies_.push_back(body);
     for (const auto& collision : link.collision_array) add_part(link, *collision, index);
     for (const auto& child : link.child_links) {
-      if (is_fixed(*child) || on_chain(*child)) add(*child, index);
+      if (of_arm || is_fixed(*child)) add(*child, index, of_arm || child.get() == base_link_);
     }
   }
 
@@ -140,6 +141,7 @@ class Arm::Builder {
   std::string file_;
   KDL::Tree tree_;
   urdf::ModelInterfaceSharedPtr model_;
+  const urdf::Link* base_link_ = nullptr;
   std::vector<const urdf::Link*> chain_;  // tip first, without the base
 };
 

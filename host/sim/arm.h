@@ -24,8 +24,9 @@ struct JointAxis {
   Eigen::Vector3d direction;  ///< unit
 };
 
-/// The arm as its URDF describes it: forward kinematics and collision shapes of the links from base to tip and of all
-/// that is rigidly attached to them. Poses are in the frame of the base link.
+/// The arm as its URDF describes it: forward kinematics and collision shapes of the links from base to tip, of what
+/// hangs on them (fingers), joints off the chain at 0, and of all that the base is rigidly attached to. Poses are in
+/// the frame of the base link.
 class Arm {
  public:
   /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1

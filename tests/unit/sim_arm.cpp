@@ -47,19 +47,22 @@ const ArmPart& part_of(const Arm& arm, const std::string& link_name) {
   throw std::runtime_error("no part of " + link_name);
 }
 
-void what_is_rigidly_attached_counts_and_what_hangs_on_other_joints_does_not(void**) {
+void what_hangs_on_the_arm_counts_and_what_it_stands_on_as_far_as_it_is_fixed(void**) {
   Arm arm = load(robot(link("world") + link("cart") + link("base") + link("arm") + link("lamp") + link("finger") +
-                       link("tip") + link("flag") + joint("world", "cart", "prismatic") +
-                       joint("cart", "base", "fixed") + joint("cart", "flag", "fixed") + joint("base", "arm") +
-                       joint("arm", "lamp", "fixed") + joint("arm", "finger") + joint("arm", "tip", "fixed")));
+                       link("tip") + link("flag") + link("door") + joint("world", "cart", "prismatic") +
+                       joint("cart", "base", "fixed") + joint("cart", "flag", "fixed") + joint("cart", "door") +
+                       joint("base", "arm") + joint("arm", "lamp", "fixed") + joint("arm", "finger") +
+                       joint("arm", "tip", "fixed")));
   assert_int_equal(arm.joints(), 1);
-  assert_int_equal(arm.parts().size(), 6);  // not world and not finger
+  assert_int_equal(arm.parts().size(), 7);  // not world and not door
   assert_false(part_of(arm, "cart").moving);
   assert_false(part_of(arm, "flag").moving);
   assert_true(part_of(arm, "lamp").moving);
+  assert_true(part_of(arm, "finger").moving);
   arm.place(JointVector::Constant(1, M_PI / 2));
   check_near(part_of(arm, "cart").base_from_part.translation(), Eigen::Vector3d(-1, 0, 0), 1e-15);
   check_near(part_of(arm, "flag").base_from_part.translation(), Eigen::Vector3d(0, 0, 0), 1e-15);
+  check_near(part_of(arm, "finger").base_from_part.translation(), Eigen::Vector3d(1, 1, 0), 1e-15);
   check_near(arm.base_from_tool().translation(), Eigen::Vector3d(1, 1, 0), 1e-15);
 }
 
@@ -128,7 +131,7 @@ void eleven_joints_are_too_many(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(what_is_rigidly_attached_counts_and_what_hangs_on_other_joints_does_not),
+      cmocka_unit_test(what_hangs_on_the_arm_counts_and_what_it_stands_on_as_far_as_it_is_fixed),
       cmocka_unit_test(all_kinds_of_joints_move_as_told),
       cmocka_unit_test(bad_arms_are_refused_in_one_line_naming_the_file),
       cmocka_unit_test(eleven_joints_are_too_many),

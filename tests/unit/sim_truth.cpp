@@ -5,6 +5,7 @@
 
 #include "tests/support/check.h"
 #include "tests/support/random.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep::sim;
 using Eigen::Vector3d;
@@ -113,6 +114,19 @@ void the_base_column_counts_for_clearance_but_not_for_the_paper(void**) {
   assert_string_equal(truth.nearest({low}).link.c_str(), "base_link");
 }
 
+/// A finger 0.2 m beyond the tool, on a slide; it stands where the slide's 0 is.
+void a_finger_below_the_tool_is_touched(void**) {
+  const std::string finger = R"(<link name="finger"><collision><geometry><sphere radius="0.03"/></geometry></collision>
+    </link><joint name="slide" type="prismatic"><parent link="tool"/><child link="finger"/><origin xyz="0 0 0.2"/>
+    <axis xyz="0 1 0"/><limit lower="0" upper="0.04" velocity="1" effort="1"/></joint></robot>)";
+  const std::string urdf = sidestep::test::replaced(sidestep::test::text_of("urdf/lwa3.urdf"), "</robot>", finger);
+  Truth truth(Arm(sidestep::test::scratch_file("finger.urdf", urdf), "base_link", "tool"));
+  truth.place(home_rad());
+  const Obstacle inside = ball(truth.arm().base_from_tool() * Vector3d(0, 0, 0.2), 0.01);
+  check_near(truth.clearance_m(inside), -0.04, 1e-9);
+  assert_string_equal(truth.nearest({inside}).link.c_str(), "finger");
+}
+
 void boxes_and_capsules_beside_the_upright_arm(void**) {
   Truth truth = lwa3();
   truth.place(JointVector::Zero(7));
@@ -187,6 +201,7 @@ int main() {
       cmocka_unit_test(home_is_0_2490_m_from_the_third_obstacle),
       cmocka_unit_test(clearance_agrees_with_capsules_in_random_poses),
       cmocka_unit_test(the_base_column_counts_for_clearance_but_not_for_the_paper),
+      cmocka_unit_test(a_finger_below_the_tool_is_touched),
       cmocka_unit_test(boxes_and_capsules_beside_the_upright_arm),
       cmocka_unit_test(the_nearest_of_many_is_the_least_of_each),
       cmocka_unit_test(without_obstacles_nothing_is_near),
