@@ -1,19 +1,54 @@
 #include "host/campaign/judge_arm.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "firmware/model/kinematics.h"
+#include "host/campaign/family.h"
 #include "host/campaign/lwa3_arm.h"
 #include "host/campaign/urdf_arm.h"
 
 namespace sidestep::campaign {
 
-std::unique_ptr<JudgeArm> judge_arm_of(const Config& config) {
-  constexpr double kSame_m = 1e-6;
-  auto lwa3 = std::make_unique<Lwa3Arm>();
+namespace {
+
+constexpr double kSame = 1e-6;  // m, rad and what goes with them
+
+bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return a.size() == b.size() && (a - b).cwiseAbs().maxCoeff() < kSame;
+}
+
+bool same_limits(const Limits& a, const Limits& b) {
+  return same(a.lower_rad, b.lower_rad) && same(a.upper_rad, b.upper_rad) && same(a.velocity_radps, b.velocity_radps) &&
+         same(a.acceleration_radps2, b.acceleration_radps2);
+}
+
+/// The capsule from one corner of the benchmark's arm to the next.
+bool is_link(const Capsule& capsule, const Vector3& from, const Vector3& to) {
+  const bool forth = same(capsule.start, from) && same(capsule.end, to);
+  const bool back = same(capsule.start, to) && same(capsule.end, from);
+  return (forth || back) && std::abs(capsule.radius_m - kLinkRadius_m) < kSame;
+}
+
+/// In one posture, with every shape, and with the limits of some family.
+bool is_lwa3(const Arm& arm, const JudgeArm& lwa3) {
   Joints q_rad(7);
   q_rad << 0.3, -0.5, 0.7, 0.9, -1.1, 0.6, 0.2;
-  const Arm& arm = config.model.arm;
-  if (arm.joints == q_rad.size() && (forward(arm, q_rad).tool_position - lwa3->pose(q_rad).tool()).norm() < kSame_m)
-    return lwa3;
+  if (arm.joints != q_rad.size()) return false;
+  const Posture posture = forward(arm, q_rad);
+  const std::vector<Vector3> corners = lwa3.pose(q_rad).corners;
+  if (!same(posture.tool_position, corners.back()) || arm.shapes.size() + 1 != corners.size()) return false;
+  for (size_t i = 0; i < arm.shapes.size(); ++i)
+    if (!is_link(placed(posture, arm.shapes[i]), corners[i], corners[i + 1])) return false;
+  return std::any_of(families().begin(), families().end(),
+                     [&](const Family& family) { return same_limits(arm.limits, lwa3.limits(family)); });
+}
+
+}  // namespace
+
+std::unique_ptr<JudgeArm> judge_arm_of(const Config& config) {
+  auto lwa3 = std::make_unique<Lwa3Arm>();
+  if (is_lwa3(config.model.arm, *lwa3)) return lwa3;
   return std::make_unique<UrdfArm>(config);
 }
 

@@ -55,6 +55,28 @@ void only_the_lwa3_is_judged_as_the_lwa3(void**) {
   }
 }
 
+std::vector<std::string> configs_with_the_lwa3() {
+  std::vector<std::string> files{"host/campaign/benchmark.yaml"};
+  for (const char* name : {"lwa3", "left", "right", "table"})
+    files.push_back(std::string("firmware/config/") + name + ".yaml");
+  return files;
+}
+
+void the_lwa3_with_another_shape_or_limit_is_another_arm(void**) {
+  for (const std::string& file : configs_with_the_lwa3()) {
+    const Config config = load_config(file, {});
+    const auto is_lwa3 = [](const Config& changed) {
+      return dynamic_cast<const Lwa3Arm*>(judge_arm_of(changed).get()) != nullptr;
+    };
+    check(is_lwa3(config), "%s", file.c_str());
+    Config gripper = config, thin = config, slow = config;
+    gripper.model.arm.shapes.push_back(gripper.model.arm.shapes.back());
+    thin.model.arm.shapes.back().capsule_body.radius_m = 0.04;
+    slow.model.arm.limits.velocity_radps[3] = 0.5;
+    check(!is_lwa3(gripper) && !is_lwa3(thin) && !is_lwa3(slow), "%s", file.c_str());
+  }
+}
+
 /// The controller's capsules enclose the surface that the simulator measures.
 void what_is_believed_is_never_more_than_the_truth(void**) {
   for (const Config& config : other_arms()) {
@@ -111,6 +133,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(it_is_where_the_benchmarks_own_arm_is),
       cmocka_unit_test(only_the_lwa3_is_judged_as_the_lwa3),
+      cmocka_unit_test(the_lwa3_with_another_shape_or_limit_is_another_arm),
       cmocka_unit_test(what_is_believed_is_never_more_than_the_truth),
       cmocka_unit_test(every_witness_of_any_arm_is_possible),
       cmocka_unit_test(contact_between_two_periods_is_seen),
