@@ -22,7 +22,7 @@ void cut_to_one_turn(double& lower_rad, double& upper_rad) {
 
 UrdfArm::UrdfArm(const Config& config)
     : source_{config.robot.urdf, config.robot.base, config.robot.tip, config.file},
-      truth_(sim::Arm(config.robot.urdf, config.robot.base, config.robot.tip)),
+      truth_(sim::Arm(config.robot.urdf, config.robot.base, config.robot.tip, config.robot.meshes.package_path)),
       model_(config.model) {}
 
 ArmPose UrdfArm::pose(const Joints& q_rad) const {

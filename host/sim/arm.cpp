@@ -29,7 +29,8 @@ KDL::Frame frame_of(const urdf::Pose& pose) {
 
 class Arm::Builder {
  public:
-  Builder(Arm& arm, const std::string& file) : arm_(arm), file_(file), model_(read_urdf(file)) {}
+  Builder(Arm& arm, const std::string& file, const std::vector<std::string>& package_path)
+      : arm_(arm), file_(file), package_path_(package_path), model_(read_urdf(file)) {}
 
   void build(const std::string& base, const std::string& tip) {
     base_link_ = link_named(base);
@@ -112,7 +113,7 @@ class Arm::Builder {
 
   CentredMesh mesh_of(const urdf::Link& link, const urdf::Mesh& mesh) const {
     try {
-      return load_mesh_solid(mesh.filename, file_, {mesh.scale.x, mesh.scale.y, mesh.scale.z});
+      return load_mesh_solid(mesh.filename, file_, package_path_, {mesh.scale.x, mesh.scale.y, mesh.scale.z});
     } catch (const std::exception& error) {
       fail(fmt::format("link '{}': {}", link.name, error.what()));
     }
@@ -139,14 +140,16 @@ class Arm::Builder {
 
   Arm& arm_;
   std::string file_;
+  std::vector<std::string> package_path_;
   KDL::Tree tree_;
   urdf::ModelInterfaceSharedPtr model_;
   const urdf::Link* base_link_ = nullptr;
   std::vector<const urdf::Link*> chain_;  // tip first, without the base
 };
 
-Arm::Arm(const std::string& urdf_file, const std::string& base, const std::string& tip) {
-  Builder builder(*this, urdf_file);
+Arm::Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
+         const std::vector<std::string>& package_path) {
+  Builder builder(*this, urdf_file, package_path);
   builder.build(base, tip);
   place(JointVector::Zero(joints_));
   bool finite = base_from_tool_.matrix().allFinite();

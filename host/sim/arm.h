@@ -31,8 +31,9 @@ class Arm {
  public:
   /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1
   /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere, box or readable
-  /// mesh.
-  Arm(const std::string& urdf_file, const std::string& base, const std::string& tip);
+  /// mesh (looked for on package_path, too: firmware/model/mesh.h).
+  Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
+      const std::vector<std::string>& package_path = {});
 
   int joints() const { return joints_; }
   void place(const JointVector& q_rad);

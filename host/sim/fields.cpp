@@ -68,6 +68,17 @@ std::string Fields::text(const std::string& key) {
   return one_line(node.Scalar());
 }
 
+std::vector<std::string> Fields::texts(const std::string& key) {
+  const YAML::Node node = value(key);
+  if (!node.IsSequence()) fail(key, "must be a list of texts");
+  std::vector<std::string> texts;
+  for (const YAML::Node& entry : node) {
+    if (!entry.IsScalar()) fail(fmt::format("{}[{}]", key, texts.size()), "must be a text");
+    texts.push_back(entry.Scalar());
+  }
+  return texts;
+}
+
 double Fields::number_in(const YAML::Node& node, const std::string& key, Range range) const {
   double parsed = 0.0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, parsed) || !std::isfinite(parsed)) {

@@ -31,6 +31,8 @@ class Fields {
   Eigen::VectorXd numbers(const std::string& key, int least_count, int most_count, Range range);
   Eigen::Vector3d vector(const std::string& key, Range range) { return numbers(key, 3, 3, range); }
 
+  std::vector<std::string> texts(const std::string& key);
+
   /// A list, not empty, of lists with one number per column.
   std::vector<Eigen::VectorXd> rows(const std::string& key, const std::vector<Range>& columns);
 

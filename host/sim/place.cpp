@@ -32,6 +32,12 @@ Eigen::Isometry3d read_base(Fields neighbours) {
          AngleAxisd(rpy.x(), Vector3d::UnitX());
 }
 
+/// The rest of the section is the scenario's own.
+std::vector<std::string> read_package_path(Fields robot) {
+  if (!robot.has("package_path")) return {};
+  return robot.texts("package_path");
+}
+
 }  // namespace
 
 Place load_place(const std::string& config_file) {
@@ -39,6 +45,7 @@ Place load_place(const std::string& config_file) {
   Place place;
   if (config.has("channels")) place.channels = read_channels(config.section("channels"));
   if (config.has("neighbours")) place.world_from_base = read_base(config.section("neighbours"));
+  if (config.has("robot")) place.package_path = read_package_path(config.section("robot"));
   place.surroundings = read_surroundings(config);
   return place;
 }

@@ -17,11 +17,12 @@ struct Channels {
 };
 
 /// Where a controller's configuration says that its arm is: whom it speaks with, where its base stands among other
-/// arms, and what stands around it, base frame.
+/// arms, what stands around it, base frame, and where the packages of its meshes are.
 struct Place {
   Channels channels;
   Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
   std::vector<Obstacle> surroundings;
+  std::vector<std::string> package_path;
 };
 
 /// Reads these from a configuration, and nothing else of it. Throws std::runtime_error, one line naming file and key.

@@ -10,7 +10,7 @@ namespace sidestep::sim {
 Run::Run(const Scenario& scenario, const std::string& csv_file)
     : plant(scenario.plant, scenario.start_rad),
       scenario_(scenario),
-      truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip)),
+      truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip, scenario.robot.package_path)),
       summary_(scenario.period_us) {
   if (truth_.joints() != scenario.start_rad.size()) {
     throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,

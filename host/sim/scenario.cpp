@@ -22,7 +22,8 @@ std::string found(const Fields& fields, const std::string& scenario_file, const 
 }
 
 RobotSource read_robot(Fields fields, const std::string& scenario_file) {
-  RobotSource robot{found(fields, scenario_file, "urdf", fields.text("urdf")), fields.text("base"), fields.text("tip")};
+  RobotSource robot{
+      found(fields, scenario_file, "urdf", fields.text("urdf")), fields.text("base"), fields.text("tip"), {}};
   fields.done();
   return robot;
 }
@@ -98,6 +99,7 @@ void read_arm(Fields& fields, Scenario& scenario) {
   scenario.world.target = read_target(fields.section("target"));
   if (scenario.controller_config == kNoConfig) return;
   const Place place = load_place(found(fields, scenario.file, "config", scenario.controller_config));
+  scenario.robot.package_path = place.package_path;
   scenario.channels = place.channels;
   scenario.world_from_base = place.world_from_base;
   scenario.world.surroundings = place.surroundings;

@@ -15,6 +15,7 @@ struct RobotSource {
   std::string urdf_file;  ///< as found, see load_scenario
   std::string base;
   std::string tip;
+  std::vector<std::string> package_path;  ///< of the controller's configuration
 };
 
 /// What must hold at the end of a run; what is absent is not judged.

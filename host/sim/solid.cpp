@@ -122,8 +122,9 @@ double bounding_radius_m(const Solid& solid) {
   return size.x();
 }
 
-CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file, const Eigen::Vector3d& scale) {
-  const Mesh mesh = load_mesh(find_mesh(name, urdf_file, {}), scale);
+CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file,
+                            const std::vector<std::string>& package_path, const Eigen::Vector3d& scale) {
+  const Mesh mesh = load_mesh(find_mesh(name, urdf_file, package_path), scale);
   Eigen::Vector3d lower_m = mesh.vertices.front(), upper_m = lower_m;
   for (const Eigen::Vector3d& p : mesh.vertices) lower_m = lower_m.cwiseMin(p), upper_m = upper_m.cwiseMax(p);
   const Eigen::Vector3d centre_m = 0.5 * (lower_m + upper_m);

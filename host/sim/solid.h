@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace sidestep::sim {
 
@@ -28,7 +29,8 @@ struct CentredMesh {
 };
 
 /// Reads a mesh that a URDF names (firmware/model/mesh.h). Throws std::runtime_error, one line.
-CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file, const Eigen::Vector3d& scale);
+CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file,
+                            const std::vector<std::string>& package_path, const Eigen::Vector3d& scale);
 
 /// Radius of the smallest sphere around the centre that holds the solid, m.
 double bounding_radius_m(const Solid& solid);

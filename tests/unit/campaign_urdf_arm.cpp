@@ -1,10 +1,15 @@
 #include "host/campaign/urdf_arm.h"
 
+#include <filesystem>
+
 #include "host/campaign/judge.h"
 #include "host/campaign/lwa3_arm.h"
+#include "host/campaign/replay.h"
 #include "host/campaign/scene_maker.h"
+#include "host/sim/run.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep;
 using namespace sidestep::campaign;
@@ -77,6 +82,29 @@ void the_lwa3_with_another_shape_or_limit_is_another_arm(void**) {
   }
 }
 
+/// A mesh that only the configuration says where it is.
+void meshes_are_found_on_the_configured_package_path(void**) {
+  std::filesystem::create_directories(test::scratch_folder() + "/elsewhere/hand");
+  test::scratch_file("elsewhere/hand/palm.obj",
+                     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 3 4\nf 1 4 2\n");
+  const std::string palm = R"(<link name="palm"><collision><geometry><mesh filename="package://hand/palm.obj"/>
+    </geometry></collision></link><joint name="wrist" type="fixed"><parent link="tool"/><child link="palm"/></joint>
+    </robot>)";
+  test::scratch_file("palm.urdf", test::replaced(test::text_of("urdf/lwa3.urdf"), "</robot>", palm));
+  const std::string file =
+      test::scratch_file("palm.yaml", "robot: {urdf: palm.urdf, base: base_link, tip: tool, package_path: [" +
+                                          test::scratch_folder() + "/elsewhere]}\n");
+  const auto arm = judge_arm_of(load_config(file, {}));
+  const ArmPose pose = arm->pose(Joints::Zero(7));
+  check(arm->clearance(pose, pose.tool() + Vector3(0, 0, 0.1), 0.01) < 0.0, "the palm is not there");
+
+  Scene scene = make_scene(family_named("moving"), 1);
+  scene.arm = arm.get();
+  const auto scenario = sim::load_scenario(test::scratch_file("palm-scene.yaml", scenario_yaml(scene))).front();
+  const std::string message = test::message_of([&] { sim::Run(scenario, ""); });
+  check(message.empty(), "%s", message.c_str());
+}
+
 /// The controller's capsules enclose the surface that the simulator measures.
 void what_is_believed_is_never_more_than_the_truth(void**) {
   for (const Config& config : other_arms()) {
@@ -134,6 +162,7 @@ int main() {
       cmocka_unit_test(it_is_where_the_benchmarks_own_arm_is),
       cmocka_unit_test(only_the_lwa3_is_judged_as_the_lwa3),
       cmocka_unit_test(the_lwa3_with_another_shape_or_limit_is_another_arm),
+      cmocka_unit_test(meshes_are_found_on_the_configured_package_path),
       cmocka_unit_test(what_is_believed_is_never_more_than_the_truth),
       cmocka_unit_test(every_witness_of_any_arm_is_possible),
       cmocka_unit_test(contact_between_two_periods_is_seen),

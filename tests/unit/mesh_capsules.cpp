@@ -176,7 +176,7 @@ void a_broken_cache_is_made_anew(void**) {
 
 void the_simulator_measures_to_the_mesh_itself(void**) {
   const auto [solid, centre_m] =
-      sim::load_mesh_solid("file://" + block("truth.obj", {0.4, 0.2, 0.1}), "x.urdf", {1, 1, 1});
+      sim::load_mesh_solid("file://" + block("truth.obj", {0.4, 0.2, 0.1}), "x.urdf", {}, {1, 1, 1});
   check_near(centre_m, Vector3(0.2, 0.1, 0.05), 1e-6);
   const sim::Solid as_box{sim::Shape::kBox, {0.4, 0.2, 0.1}};
   const sim::Solid others[] = {{sim::Shape::kSphere, {0.05, 0, 0}}, {sim::Shape::kCapsule, {0.05, 0.3, 0}}};
