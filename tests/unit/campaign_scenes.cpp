@@ -3,6 +3,9 @@
 #include "tests/support/check.h"
 
 using namespace sidestep::campaign;
+using sidestep::Vector3;
+using sidestep::test::message_of;
+using sidestep::test::one_line_with;
 
 namespace {
 
@@ -160,11 +163,36 @@ void dodged_spheres_go_through_the_arm_past_the_column(void**) {
   });
 }
 
+/// Its joints are too slow for any motion that a scene begins and ends with.
+class SlowArm : public Lwa3Arm {
+ public:
+  Limits limits(const Family& family) const override {
+    Limits limits = Lwa3Arm::limits(family);
+    limits.velocity_radps.setConstant(0.05);
+    return limits;
+  }
+};
+
+/// Every sphere is too near to it.
+class WideArm : public Lwa3Arm {
+ public:
+  double clearance(const ArmPose&, const Vector3&, double, double) const override { return 0.0; }
+};
+
+void an_arm_without_scenes_is_refused_by_family_and_reason(void**) {
+  const SlowArm slow;
+  const std::string too_slow = message_of([&] { make_scene(family_named("moving"), 1, slow); });
+  check(one_line_with(too_slow, {"moving", "speed"}), "%s", too_slow.c_str());
+  const WideArm wide;
+  const std::string no_place = message_of([&] { make_scene(family_named("dodge@1"), 1, wide); });
+  check(one_line_with(no_place, {"dodge@1", "no scene in"}), "%s", no_place.c_str());
+}
+
 void families_are_found_by_word(void**) {
   check(families_of("all").size() == families().size(), "%zu", families_of("all").size());
   check(families_of("dodge").size() == 12, "%zu", families_of("dodge").size());
   check(families_of("dodge@0.5").size() == 1, "%zu", families_of("dodge@0.5").size());
-  check(sidestep::test::one_line_with(sidestep::test::message_of([] { families_of("slow"); }), {"slow", "moving"}),
+  check(one_line_with(message_of([] { families_of("slow"); }), {"slow", "moving"}),
         "an unknown family is named, and those that exist");
 }
 
@@ -182,6 +210,7 @@ int main() {
       cmocka_unit_test(a_seed_is_a_scene),
       cmocka_unit_test(real_has_the_scenes_of_moving),
       cmocka_unit_test(dodged_spheres_go_through_the_arm_past_the_column),
+      cmocka_unit_test(an_arm_without_scenes_is_refused_by_family_and_reason),
       cmocka_unit_test(families_are_found_by_word),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
