@@ -114,6 +114,17 @@ void a_pilot_that_never_tracks_is_named(void**) {
         "the pilot's own words are told");
 }
 
+void only_a_controller_that_knows_the_benchmarks_world_is_let_in(void**) {
+  const Limits limits = lwa3_arm().range();
+  const auto refusal = [&](const char* config) {
+    const auto model = sidestep::load_config(config, {}).model;
+    return sidestep::test::message_of([&] { model_for(model, limits); });
+  };
+  check(refusal("firmware/config/lwa3.yaml").empty(), "%s", refusal("firmware/config/lwa3.yaml").c_str());
+  const std::string table = refusal("firmware/config/table.yaml");
+  check(sidestep::test::one_line_with(table, {"surroundings: "}), "%s", table.c_str());
+}
+
 /// With a lag of 30 ms the arm is behind a pilot that does not look at it by the lag times the speed.
 class SpinPilot : public Pilot {
  public:
@@ -160,6 +171,7 @@ int main() {
       cmocka_unit_test(an_arm_that_stands_is_hit_by_every_dodge),
       cmocka_unit_test(the_world_waits_until_the_pilot_tracks),
       cmocka_unit_test(a_pilot_that_never_tracks_is_named),
+      cmocka_unit_test(only_a_controller_that_knows_the_benchmarks_world_is_let_in),
       cmocka_unit_test(the_real_arm_lags),
       cmocka_unit_test(smoothness_of_a_known_stream),
   };
