@@ -58,7 +58,7 @@ std::string plant_yaml(const Scene& scene) {
   const Limits limits = scene.arm->limits(*scene.family);
   return fmt::format(
       "{{kind: servo, lag_s: {}, latency_s: 0, velocity_limit_radps: {}, acceleration_limit_radps2: {}}}", kPlantLag_s,
-      limits.velocity_radps[0], kPlantAcceleration_radps2);
+      list(limits.velocity_radps), kPlantAcceleration_radps2);
 }
 
 }  // namespace

@@ -35,6 +35,22 @@ void the_simulator_reads_the_same_scene(void**) {
   }
 }
 
+/// An arm with its own limit for each joint.
+void the_real_plant_has_the_limits_of_every_joint(void**) {
+  class UnevenArm : public Lwa3Arm {
+   public:
+    Limits limits(const Family& family) const override {
+      Limits limits = Lwa3Arm::limits(family);
+      limits.velocity_radps[6] = 1.7;
+      return limits;
+    }
+  };
+  const UnevenArm arm;
+  const std::string yaml = scenario_yaml(scene_named("real:14", arm));
+  const auto scenario = sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", yaml)).front();
+  check_near(scenario.plant.velocity_limit_radps, arm.limits(family_named("real")).velocity_radps, 0.0);
+}
+
 /// benchmark.yaml is the controller's configuration for these scenarios.
 void the_configuration_has_the_benchmarks_limits(void**) {
   const auto model = sidestep::load_config("host/campaign/benchmark.yaml", {}).model;
@@ -66,6 +82,7 @@ void bad_names_are_refused(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_simulator_reads_the_same_scene),
+      cmocka_unit_test(the_real_plant_has_the_limits_of_every_joint),
       cmocka_unit_test(the_configuration_has_the_benchmarks_limits),
       cmocka_unit_test(dodges_have_the_limits_of_the_urdf),
       cmocka_unit_test(bad_names_are_refused),
