@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "host/sim/play.h"
@@ -14,6 +16,11 @@ using namespace sidestep::sim;
 enum ExitCode { kHeld = 0, kBroken = 1, kBadInput = 2, kNoController = 3, kInterruptedBySignal = 130 };
 
 std::atomic<bool> interrupted{false};
+
+/// CLI11's ranges let nan through.
+const CLI::Validator kNumber(
+    [](const std::string& text) { return std::isnan(std::strtod(text.c_str(), nullptr)) ? "is not a number" : ""; },
+    "");
 
 struct Options {
   std::string scenario, lcm_url, log_file, csv_file;
@@ -37,6 +44,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--wait", options.patience_s, "give up when the controller does not track within this time, s")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86400.0))
+      ->check(kNumber)
       ->type_name("SECONDS");
   app.add_flag("--quiet", options.quiet, "no live line");
   app.footer(

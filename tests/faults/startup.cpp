@@ -74,6 +74,14 @@ void wrong_arguments_end_with_code_2(void**) {
   }
 }
 
+void the_simulator_waits_only_for_a_time_that_can_be(void**) {
+  for (const char* wait : {"nan", "-nan", "inf", "0", "-1", "soon", ""}) {
+    Process process({"build/sim", "--scenario", "host/scenarios/paper-c.yaml", "--wait", wait});
+    check(process.wait(kLimit_s) == 2, "%s: %s", wait, process.output().c_str());
+    check(process.output().find("--wait") != std::string::npos, "%s: %s", wait, process.output().c_str());
+  }
+}
+
 void help_is_given(void**) {
   Process process({"build/controller", "--help"});
   assert_int_equal(process.wait(kLimit_s), 0);
@@ -118,6 +126,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(a_bad_config_ends_with_code_2_and_one_line_and_publishes_nothing, test::kill_processes),
       cmocka_unit_test_teardown(wrong_arguments_end_with_code_2, test::kill_processes),
+      cmocka_unit_test_teardown(the_simulator_waits_only_for_a_time_that_can_be, test::kill_processes),
       cmocka_unit_test_teardown(help_is_given, test::kill_processes),
       cmocka_unit_test_teardown(a_network_that_cannot_be_used_ends_with_code_1_and_a_line, test::kill_processes),
       cmocka_unit_test_teardown(it_starts_without_a_file_from_urdf_base_and_tip, test::kill_processes),
