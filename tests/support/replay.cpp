@@ -1,15 +1,29 @@
 #include "tests/support/replay.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
 
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 
 namespace sidestep::test {
+namespace {
+
+/// The program, behind an emulator where there is one: other machines round otherwise.
+std::vector<std::string> program() {
+  const char* command = std::getenv("REPLAY");
+  std::istringstream words(command ? command : "build/replay");
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+}  // namespace
 
 Replay replay(const std::string& log, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"build/replay", log};
+  std::vector<std::string> arguments = program();
+  arguments.push_back(log);
   arguments.insert(arguments.end(), more.begin(), more.end());
   Process process(arguments);
   const int code = process.wait(60.0);
