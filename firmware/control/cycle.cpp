@@ -41,10 +41,11 @@ Wish ask_law(const Model& model, const Situation& situation, const State& state,
 }
 
 /// How far the command of a joint has to close in on the measured arm, rad: by what is beyond half the following error,
-/// so that a command that can catch up is never held back by it.
+/// so that a command that can catch up is never held back by it; and altogether from an arm that has been moved.
 double catch_up(const Model& model, const State& state, const ArmState& arm, int joint) {
+  const double following_error_rad = model.settings.following_error_rad, granted_rad = 0.5 * following_error_rad;
   const double error_rad = arm.position_rad[joint] - state.position_rad[joint];
-  const double granted_rad = 0.5 * model.settings.following_error_rad;
+  if (std::abs(error_rad) > following_error_rad) return error_rad;
   return error_rad - std::clamp(error_rad, -granted_rad, granted_rad);
 }
 
@@ -123,11 +124,12 @@ Command gate(const Model& model, const State& state, const ArmState& arm, const 
   return {lead(model, state, arm, velocity_radps), velocity_radps};
 }
 
-/// A stream of commands starts from where the arm is, not from where it was. It runs in every mode that moves the arm,
-/// and after a fault until the arm is at rest.
+/// A stream of commands starts from where the arm is, not from where it was before it stopped by itself. It runs in
+/// every mode that moves the arm, and after a fault until the arm is at rest.
 bool goes_on(const State& state, const Facts& facts, const JointVector& velocity_radps) {
   if (facts.arm_starting || state.supervision.mode == Mode::kWait) return false;
-  if (!state.commanding && !facts.arm_fresh) return false;
+  const bool heard = facts.arm_fresh && state.arm_received_s > state.stopped_s;
+  if (!state.commanding && !heard) return false;
   if (state.supervision.mode == Mode::kFault) return state.commanding && !velocity_radps.isZero(0.0);
   return true;
 }

@@ -52,7 +52,8 @@ struct State {
   JointVector arm_position_rad;
   double consistent_since_s = 0.0;
   int skipped_in_a_row = 0;
-  double cycle_s = 0.0;  ///< when the last cycle was
+  double cycle_s = 0.0;          ///< when the last cycle was
+  double stopped_s = -HUGE_VAL;  ///< when the arm last stopped by itself for want of commands
 };
 
 /// What one cycle tells the world, as controller_status_t.

@@ -64,8 +64,13 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   const Ages& ages = model.settings.ages;
   const double rounding_s = 1e-9;
   Facts facts;
-  // Nor after a pause of this side, in which the arm has begun to stop.
-  if (now_s - next.cycle_s > longest_gap_s(model, kArmWaits_s) + rounding_s) next.commanding = false;
+  // Nor do commands go on after a pause of this side: the arm has begun to stop by itself.
+  const double waits_s = longest_gap_s(model, kArmWaits_s);
+  if (next.commanding && now_s - next.cycle_s > waits_s + rounding_s) {
+    next.commanding = false;
+    next.stopped_s = next.cycle_s + waits_s + model.settings.period_s();  // as far as arm states tell
+  }
+  if (now_s < next.cycle_s) next.stopped_s = -HUGE_VAL;  // the clock has started over
   facts.arm_known = inputs.arm.message != nullptr;
   if (facts.arm_known) {
     const ArmNews news = follow_arm(model, inputs.arm, now_s, next);

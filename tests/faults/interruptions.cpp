@@ -59,7 +59,7 @@ void an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is(void**) {
   check_stream(arm);
 }
 
-/// Like SIGSTOP and SIGCONT to the arm's side: it freezes where it is and goes on.
+/// Like SIGSTOP and SIGCONT to the arm's side: it freezes, and goes on with what it was told meanwhile.
 void an_arm_that_pauses_is_a_fault_and_taken_up_again(void**) {
   LiveScene scene("sidestep");
   for (int i = 0; i < 3; ++i) {

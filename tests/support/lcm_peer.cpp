@@ -44,6 +44,10 @@ void LcmPeer::listen(double duration_s) {
   await([] { return false; }, duration_s);
 }
 
+void LcmPeer::drain() {
+  while (lcm_.handleTimeout(0) > 0) continue;
+}
+
 void LcmPeer::on_command(const lcm::ReceiveBuffer* buffer, const std::string&, const joint_command_t* message) {
   const auto* bytes = static_cast<const uint8_t*>(buffer->data);
   commands.push_back(*message);

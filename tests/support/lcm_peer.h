@@ -31,6 +31,8 @@ class LcmPeer {
 
   /// Receives until the condition holds, for at most limit_s. Returns whether it does.
   bool await(const std::function<bool()>& condition, double limit_s);
+  /// Receives what is there already.
+  void drain();
   /// Receives for a while.
   void listen(double duration_s);
 

@@ -48,7 +48,7 @@ void LiveArm::stop_by_itself() {
 
 /// The arm is where it was last told to be.
 void LiveArm::follow() {
-  ticks_without_command_ = followed_ < peer.commands.size() ? 0 : ticks_without_command_ + 1;
+  if (followed_ < peer.commands.size()) ticks_without_command_ = 0;
   for (; followed_ < peer.commands.size(); ++followed_) {
     const joint_command_t& command = peer.commands[followed_];
     const int64_t before = followed_ > 0 ? peer.commands[followed_ - 1].seq : command.seq - 1;
@@ -63,7 +63,9 @@ void LiveArm::follow() {
 
 void LiveArm::tick() {
   const int64_t utime = utime_now() + clock_offset_us;
-  if (ticks_without_command_ >= kTicksToWait) stop_by_itself();
+  peer.drain();
+  follow();
+  if (ticks_without_command_++ >= kTicksToWait) stop_by_itself();
   if (target_speaks) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
   if (obstacles_speak)
     peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));

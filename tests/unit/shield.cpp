@@ -380,6 +380,7 @@ State reachable_state(Random& random, const JointVector& measured_rad, double no
   state.arm_utime = 1;
   state.arm_received_s = now_s;
   state.arm_position_rad = measured_rad;
+  state.cycle_s = now_s - kPeriod_s;
   return state;
 }
 
