@@ -46,7 +46,11 @@ def main():
         open(arguments.log, "ab").close()
     except OSError as error:
         parser.error(str(error))
-    print(f"{record(arguments.log, arguments.channels, arguments.lcm_url)} messages in {arguments.log}")
+    try:
+        count = record(arguments.log, arguments.channels, arguments.lcm_url)
+    except KeyboardInterrupt:  # before it had begun
+        count = 0
+    print(f"{count} messages in {arguments.log}")
 
 
 if __name__ == "__main__":
