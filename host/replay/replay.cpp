@@ -100,6 +100,7 @@ class Rerun {
 
   /// Behind the set that they came with.
   bool put_old_places(ObstacleSet& set) {
+    if (old_places_.empty()) return true;
     const size_t count = old_places_.size() / sizeof(Obstacle), room = static_cast<size_t>(kMaxObstacles - set.count);
     if (old_places_.size() % sizeof(Obstacle) != 0 || count > room) return false;
     std::memcpy(static_cast<void*>(set.obstacles.data() + set.count), old_places_.data(), old_places_.size());
