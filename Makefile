@@ -70,10 +70,10 @@ fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and 
 	@tests/fuzz/run $(or $(SECONDS),60)
 
 sanitize: all $(READY).test ## all tests under ASan and UBSan, those with threads under TSan
-	@+tests/sanitize
+	@MAKEFLAGS= tests/sanitize
 
 arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm64 in build/arm64, run the unit tests under qemu
-	@+tests/arm64
+	@MAKEFLAGS= tests/arm64
 
 ##@ Building
 

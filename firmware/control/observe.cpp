@@ -64,7 +64,7 @@ Facts observe(const Model& model, const Inputs& inputs, double now_s, State& nex
   const Ages& ages = model.settings.ages;
   const double rounding_s = 1e-9;
   Facts facts;
-  // Nor do commands go on after a pause of this side: the arm has begun to stop by itself.
+  // After a pause of this side commands do not go on from the last one: the arm has begun to stop by itself.
   const double waits_s = longest_gap_s(model, kArmWaits_s);
   if (next.commanding && now_s - next.cycle_s > waits_s + rounding_s) {
     next.commanding = false;

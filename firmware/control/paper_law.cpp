@@ -8,7 +8,6 @@
 namespace sidestep {
 
 Wish paper_law(const PaperGains& gains, double period_s, const Situation& now, const Vector3* planned_mps) {
-  const int rows = now.target.tracks_orientation ? 6 : 3;
   const TaskJacobian& jacobian = now.tool_jacobian;
   const Vector3 v_tool = jacobian.topRows<3>() * now.velocity_radps;
   const Vector3& p_tool = now.posture.tool_position;
@@ -22,9 +21,9 @@ Wish paper_law(const PaperGains& gains, double period_s, const Situation& now, c
   wish.task_speed_limited = speed_mps > gains.v_max_mps;
   if (wish.task_speed_limited) wish.tool_velocity_mps *= gains.v_max_mps / speed_mps;
 
-  TaskVector x(rows);
+  TaskVector x(jacobian.rows());
   x.head<3>() = wish.tool_velocity_mps;
-  if (rows == 6) x.tail<3>() = orientation_rate(gains, now.target, now.posture.tool_rotation);
+  if (now.target.tracks_orientation) x.tail<3>() = orientation_rate(gains, now.target, now.posture.tool_rotation);
 
   const TaskInverse inverse = invert(gains, jacobian);
   wish.damping = inverse.lambda;

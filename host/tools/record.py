@@ -48,8 +48,8 @@ def main():
         parser.error(str(error))
     try:
         count = record(arguments.log, arguments.channels, arguments.lcm_url)
-    except KeyboardInterrupt:  # before it had begun
-        count = 0
+    except KeyboardInterrupt:
+        sys.exit("stopped before it began to listen")
     print(f"{count} messages in {arguments.log}")
 
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/control/limits.h"
+
 namespace sidestep::test {
 namespace {
 
@@ -40,8 +42,7 @@ int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
 /// The next command has to go on from there.
 void LiveArm::stop_by_itself() {
   const double tick_s = std::chrono::duration<double>(kPeriod).count();
-  const JointVector change = limits_.acceleration_radps2 * tick_s;
-  velocity_radps_ -= velocity_radps_.cwiseMax(-change).cwiseMin(change);
+  velocity_radps_ = brake(limits_, velocity_radps_, tick_s);
   position_rad_ += velocity_radps_ * tick_s;
   commands.begin(position_rad_, velocity_radps_);
 }
