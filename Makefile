@@ -35,7 +35,8 @@ FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
               $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config \
-                io/config_section io/find_file io/neighbourhood io/obstacle_encoder io/reported io/surroundings))
+                io/config_section io/find_file io/neighbourhood io/obstacle_encoder io/reported io/surroundings \
+                io/yaml_document))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check

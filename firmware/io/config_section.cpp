@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "firmware/io/yaml_document.h"
 #include "firmware/model/text_file.h"
 
 namespace sidestep {
@@ -33,7 +34,7 @@ Section::Section(std::string file, std::string path, const YAML::Node& node)
 Section Section::of_file(const std::string& file) {
   const std::string text = read_text_file(file);
   try {
-    return Section(file, "", YAML::Load(text));  // LoadAll() never comes back from a lone comma
+    return Section(file, "", only_document(text));
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(
         fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, on_one_line(error.msg)));

@@ -47,6 +47,8 @@ bool is_lwa3(const Arm& arm, const JudgeArm& lwa3) {
 }  // namespace
 
 std::unique_ptr<JudgeArm> judge_arm_of(const Config& config) {
+  if (!config.model.surroundings.empty())
+    throw std::runtime_error("surroundings: the benchmark has none: neither its witness nor its judge knows them");
   auto lwa3 = std::make_unique<Lwa3Arm>();
   if (is_lwa3(config.model.arm, *lwa3)) return lwa3;
   return std::make_unique<UrdfArm>(config);

@@ -66,6 +66,7 @@ class JudgeArm {
 };
 
 /// The judge's arm for a controller's: the benchmark's own where it is that, and any other as its URDF describes it.
+/// Throws std::runtime_error where surroundings are configured.
 std::unique_ptr<JudgeArm> judge_arm_of(const Config& config);
 
 /// Velocity of the tool over the joint velocities; with joint velocities, of its turning.

@@ -127,8 +127,6 @@ std::unique_ptr<Pilot> make_pilot(const Model* model, const JudgeArm& arm, const
 Model model_for(const Model& configured, const Limits& limits) {
   if (configured.settings.rate_hz * kPeriod_s != 1.0)
     throw std::runtime_error(fmt::format("control.rate_hz: the benchmark's cycle is {} s", kPeriod_s));
-  if (!configured.surroundings.empty())
-    throw std::runtime_error("surroundings: the benchmark has none: neither its witness nor its judge knows them");
   Model model = configured;
   model.arm.limits = limits;
   return model;

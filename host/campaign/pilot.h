@@ -34,8 +34,7 @@ class Pilot {
 /// `model` steers, its step() called in process; null: plain tracking of the arm. Model and arm must outlive the pilot.
 std::unique_ptr<Pilot> make_pilot(const Model* model, const JudgeArm& arm, const Limits& limits);
 
-/// The controller's model with the limits of a family. Throws std::runtime_error unless its cycle is the benchmark's
-/// and it knows of no surroundings, as the benchmark has none.
+/// The controller's model with the limits of a family. Throws std::runtime_error unless its cycle is the benchmark's.
 Model model_for(const Model& configured, const Limits& limits);
 
 }  // namespace sidestep::campaign

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "firmware/io/yaml_document.h"
 #include "firmware/model/text_file.h"
 
 namespace sidestep::sim {
@@ -36,7 +37,7 @@ Fields::Fields(const YAML::Node& map, std::string file, std::string prefix)
 
 Fields Fields::from_file(const std::string& file) {
   try {
-    return Fields(YAML::Load(read_text_file(file)), file, "");
+    return Fields(only_document(read_text_file(file)), file, "");
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(one_line(fmt::format("{}: line {}: {}", file, error.mark.line + 1, error.msg)));
   }

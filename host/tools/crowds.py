@@ -48,6 +48,8 @@ def from_csv(file):
                 tracks.setdefault(id_of(row["id"]), []).append((t_s, place))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{file}, line {rows.line_num}: {error}") from None
+    if not tracks:  # or the empty set would be sent, which says that nothing is there
+        raise ValueError(f"{file}: no rows")
     tracks = {number: sorted(track) for number, track in tracks.items()}
     return lambda t: [sphere(number, *on_track(track, t)) for number, track in tracks.items()]
 

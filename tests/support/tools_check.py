@@ -178,6 +178,8 @@ def refusals():
         no_robot, log = Path(name) / "no-robot.yaml", Path(name) / "old.lcmlog"
         no_robot.write_text("rate_hz: 100\n")
         log.write_text("old")
+        no_rows = Path(name) / "no-rows.csv"
+        no_rows.write_text("t_s,id,x_m,y_m,z_m,radius_m\n")
         nonsense = Path(name) / "nonsense"  # neither YAML nor XML
         nonsense.write_text("a: b: c\n")
         for script, words, code, reason in (
@@ -186,6 +188,7 @@ def refusals():
                 (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres do not go together"),
                 (send_obstacles, ["--csv", ""], 2, "No such file"),
                 (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}"),
+                (send_obstacles, ["--csv", no_rows], 2, f"{no_rows}: no rows"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
                 (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "listen to '('"),
                 (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),

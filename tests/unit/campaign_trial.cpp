@@ -115,10 +115,8 @@ void a_pilot_that_never_tracks_is_named(void**) {
 }
 
 void only_a_controller_that_knows_the_benchmarks_world_is_let_in(void**) {
-  const Limits limits = lwa3_arm().range();
-  const auto refusal = [&](const char* config) {
-    const auto model = sidestep::load_config(config, {}).model;
-    return sidestep::test::message_of([&] { model_for(model, limits); });
+  const auto refusal = [](const char* config) {
+    return sidestep::test::message_of([&] { judge_arm_of(sidestep::load_config(config, {})); });
   };
   check(refusal("firmware/config/lwa3.yaml").empty(), "%s", refusal("firmware/config/lwa3.yaml").c_str());
   const std::string table = refusal("firmware/config/table.yaml");

@@ -124,6 +124,8 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"law: paper\nlaw: paper", "law"},
       {"paper: {d_1_m: 0.3, d_1_m: 0.3}", "paper.d_1_m"},
       {"ages: {}\nages: {}", "ages"},
+      {"---\nlaw: paper", "second document"},
+      {"...\n{law: paper}", "second document"},
   };
   int wrong = 0;
   for (const auto& bad : cases) {

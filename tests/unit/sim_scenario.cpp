@@ -217,7 +217,8 @@ void files_that_are_no_scenario_are_refused_in_one_line(void**) {
                                std::string("a\0b", 3),
                                "\xff\xfe",
                                "*alias",
-                               "&a [*a]"};
+                               "&a [*a]",
+                               "rate_hz: 100\n---\nrate_hz: 200\n"};
   for (const std::string& text : texts) {
     const std::string message = message_of([&] { load(text); });
     check(one_line_with(message, {"a.yaml: "}), "%.20s: %s", text.c_str(), message.c_str());
