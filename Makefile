@@ -34,7 +34,7 @@ TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
 FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
-              $(patsubst %,firmware/%.cpp,control/inputs control/jumps io/admission io/arm_reader io/config \
+              $(patsubst %,firmware/%.cpp,control/inputs control/old_places io/admission io/arm_reader io/config \
                 io/config_section io/find_file io/neighbourhood io/obstacle_encoder io/reported io/surroundings \
                 io/yaml_document))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))

@@ -14,12 +14,20 @@
 namespace sidestep {
 namespace {
 
+/// The velocity that both the arm's own words and its positions speak for: the lesser, and rest where they contradict.
+double believed_radps(double said_radps, double seen_radps) {
+  if (said_radps * seen_radps <= 0.0) return 0.0;
+  return std::abs(said_radps) < std::abs(seen_radps) ? said_radps : seen_radps;
+}
+
 /// A new stream of commands starts from where the arm is held, so that nothing jumps; a running one goes on from its
 /// last.
 void start_from(const Model& model, const ArmState& arm, State& next) {
   const JointVector& fastest = model.arm.limits.velocity_radps;
   next.position_rad = arm.held_rad.size() > 0 ? arm.held_rad : arm.position_rad;
-  next.velocity_radps = arm.velocity_radps.cwiseMax(-fastest).cwiseMin(fastest);
+  next.velocity_radps = arm.velocity_radps.binaryExpr(next.arm_rate_radps, &believed_radps);
+  next.velocity_radps = next.velocity_radps.cwiseMax(-fastest).cwiseMin(fastest);
+  next.rate_radps = next.velocity_radps;
   next.planning = false;
 }
 
@@ -49,16 +57,25 @@ double catch_up(const Model& model, const State& state, const ArmState& arm, int
   return error_rad - std::clamp(error_rad, -granted_rad, granted_rad);
 }
 
-/// Where the velocity leads from the last commanded position. Should the arm have fallen too far behind or been moved,
-/// the command closes in on it with what the velocity limit leaves.
-JointVector lead(const Model& model, const State& state, const ArmState& arm, const JointVector& velocity_radps) {
-  const double period_s = model.settings.period_s();
+/// How fast the commanded position of a joint moves, rad/s: with the velocity, and where the arm has fallen too far
+/// behind or been moved closer to it, but as a joint could.
+double commanded_rate(const Model& model, const State& state, const ArmState& arm, int joint, double velocity_radps) {
+  const bool moves = state.supervision.mode == Mode::kHold || state.supervision.mode == Mode::kTrack;
+  const double gap_rad = moves ? catch_up(model, state, arm, joint) : 0.0;
+  const double last_radps = state.rate_radps[joint];
+  if (gap_rad == 0.0 && last_radps == state.velocity_radps[joint]) return velocity_radps;
+  const double period_s = model.settings.period_s(), acceleration_radps2 = model.arm.limits.acceleration_radps2[joint];
+  const double fastest_radps = model.arm.limits.velocity_radps[joint], change_radps = acceleration_radps2 * period_s;
+  const double closer_radps = velocity_radps + stopping_velocity(gap_rad, acceleration_radps2, period_s);
+  return std::clamp(std::clamp(closer_radps, -fastest_radps, fastest_radps), last_radps - change_radps,
+                    last_radps + change_radps);
+}
+
+/// Where the rate leads from the last commanded position.
+JointVector lead(const Model& model, const State& state, const JointVector& rate_radps) {
   const JointLimits& limits = model.arm.limits;
-  const bool braking = state.supervision.mode != Mode::kHold && state.supervision.mode != Mode::kTrack;
-  JointVector position_rad = state.position_rad + velocity_radps * period_s;
+  JointVector position_rad = state.position_rad + rate_radps * model.settings.period_s();
   for (int i = 0; i < model.arm.joints; ++i) {
-    const double room_rad = std::max(0.0, limits.velocity_radps[i] - std::abs(velocity_radps[i])) * period_s;
-    if (!braking) position_rad[i] += std::clamp(catch_up(model, state, arm, i), -room_rad, room_rad);
     // Rounding only; an arm that is outside its limits is led back, not pulled.
     const bool inside = state.position_rad[i] >= limits.lower_rad[i] && state.position_rad[i] <= limits.upper_rad[i];
     if (inside) position_rad[i] = std::clamp(position_rad[i], limits.lower_rad[i], limits.upper_rad[i]);
@@ -67,16 +84,18 @@ JointVector lead(const Model& model, const State& state, const ArmState& arm, co
 }
 
 /// The velocities that the joint limits leave for the coming period, wherever between command and measurement the arm
-/// is. The command may not lead the arm by more than the following error either: an arm that is held fast stops it.
+/// is. The command may not lead the arm on by more than the following error either: an arm that is held fast stops it.
 VelocityRange next_range(const Model& model, const State& state, const ArmState& arm) {
   const double period_s = model.settings.period_s();
   JointLimits limits = model.arm.limits;
   JointVector position_rad = state.position_rad;
   for (int i = 0; i < model.arm.joints; ++i) {
-    const double room_rad = limits.velocity_radps[i] * period_s;
-    position_rad[i] += std::clamp(catch_up(model, state, arm, i), -room_rad, room_rad);
-    limits.lower_rad[i] = std::max(limits.lower_rad[i], arm.position_rad[i] - model.settings.following_error_rad);
-    limits.upper_rad[i] = std::min(limits.upper_rad[i], arm.position_rad[i] + model.settings.following_error_rad);
+    const double velocity_radps = state.velocity_radps[i];
+    position_rad[i] += (commanded_rate(model, state, arm, i, velocity_radps) - velocity_radps) * period_s;
+    const double behind_rad = arm.position_rad[i] - model.settings.following_error_rad;
+    const double ahead_rad = arm.position_rad[i] + model.settings.following_error_rad;
+    limits.lower_rad[i] = std::max(limits.lower_rad[i], std::min(behind_rad, position_rad[i]));
+    limits.upper_rad[i] = std::min(limits.upper_rad[i], std::max(ahead_rad, position_rad[i]));
   }
   return velocity_range(limits, position_rad.cwiseMin(arm.position_rad), position_rad.cwiseMax(arm.position_rad),
                         state.velocity_radps, period_s);
@@ -112,25 +131,27 @@ JointVector keep_clear(const Model& model, const Situation& situation, const Arm
 }
 
 /// The last word before a command leaves: within all limits, or braking.
-Command gate(const Model& model, const State& state, const ArmState& arm, const VelocityRange& range,
-             JointVector velocity_radps, int& limiting) {
+Command gate(const Model& model, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
+             State& next, int& limiting) {
   const double period_s = model.settings.period_s();
   const JointLimits& limits = model.arm.limits;
-  const Mode mode = state.supervision.mode;
+  const Mode mode = next.supervision.mode;
   if (mode == Mode::kHold || mode == Mode::kTrack)
-    limiting |= apply_limits(limits, range, state.velocity_radps, period_s, velocity_radps);
+    limiting |= apply_limits(limits, range, next.velocity_radps, period_s, velocity_radps);
   else
-    velocity_radps = brake(limits, state.velocity_radps, period_s);
-  return {lead(model, state, arm, velocity_radps), velocity_radps};
+    velocity_radps = brake(limits, next.velocity_radps, period_s);
+  for (int i = 0; i < model.arm.joints; ++i)
+    next.rate_radps[i] = commanded_rate(model, next, arm, i, velocity_radps[i]);
+  return {lead(model, next, next.rate_radps), velocity_radps};
 }
 
 /// A stream of commands starts from where the arm is, not from where it was before it stopped by itself. It runs in
 /// every mode that moves the arm, and after a fault until the arm is at rest.
-bool goes_on(const State& state, const Facts& facts, const JointVector& velocity_radps) {
+bool goes_on(const State& state, const Facts& facts) {
   if (facts.arm_starting || state.supervision.mode == Mode::kWait) return false;
   const bool heard = facts.arm_fresh && state.arm_received_s > state.stopped_s;
   if (!state.commanding && !heard) return false;
-  if (state.supervision.mode == Mode::kFault) return state.commanding && !velocity_radps.isZero(0.0);
+  if (state.supervision.mode == Mode::kFault) return !at_rest(state);
   return true;
 }
 
@@ -145,7 +166,7 @@ void remember(const Command& command, const Wish& wish, const Facts& facts, Stat
   next.velocity_radps = command.velocity_radps;
   next.planning = next.supervision.mode == Mode::kTrack;
   next.planned_mps = wish.tool_velocity_mps;
-  next.commanding = goes_on(next, facts, command.velocity_radps);
+  next.commanding = goes_on(next, facts);
 }
 
 void report_tool(const Situation& situation, Report& report) {
@@ -168,6 +189,10 @@ void report_clearance(const Clearance& clearance, const ObstacleView& obstacles,
 }
 
 }  // namespace
+
+bool at_rest(const State& state) {
+  return !state.commanding || (state.velocity_radps.isZero(0.0) && state.rate_radps.isZero(0.0));
+}
 
 Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe) {
   const auto passed = [probe](Stage stage) {
@@ -202,7 +227,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
     const JointVector safe = keep_clear(model, situation, arm, range, wish, guide != nullptr, next);
     passed(Stage::kShield);
     if (!safe.allFinite()) distrust(now_s, next);
-    result.command = gate(model, next, arm, range, safe, report.limiting);
+    result.command = gate(model, arm, range, safe, next, report.limiting);
     remember(result.command, wish, facts, next);
     passed(Stage::kGate);
 

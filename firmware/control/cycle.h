@@ -39,6 +39,7 @@ struct State {
   bool commanding = false;     ///< a command stream is running; it goes on from the next two
   JointVector position_rad;    ///< last commanded
   JointVector velocity_radps;  ///< last commanded
+  JointVector rate_radps;      ///< at which the commanded position moved: the velocity, unless it was catching up
 
   JointVector evasion_radps;  ///< by which the shield gets out of a way; size 0: nothing is in the way
 
@@ -50,11 +51,15 @@ struct State {
   double arm_received_s = 0.0;
   double arm_started_s = 0.0;  ///< when its driver began to speak
   JointVector arm_position_rad;
+  JointVector arm_rate_radps;  ///< from the position before to this one
   double consistent_since_s = 0.0;
   int skipped_in_a_row = 0;
   double cycle_s = 0.0;          ///< when the last cycle was
   double stopped_s = -HUGE_VAL;  ///< when the arm last stopped by itself for want of commands
 };
+
+/// The running stream of commands, if any, has come to rest.
+bool at_rest(const State& state);
 
 /// What one cycle tells the world, as controller_status_t.
 struct Report {

@@ -54,7 +54,8 @@ bool Order::starts_anew(int64_t utime, double now_s, double restart_s) {
 bool Order::accept(int64_t utime, double now_s, double restart_s) {
   if (any_ && utime <= utime_ && !starts_anew(utime, now_s, restart_s)) return false;
   const double by_sender_s = 1e-6 * (static_cast<double>(utime) - static_cast<double>(utime_));
-  elapsed_s_ = any_ ? std::max(std::abs(now_s - accepted_s_), by_sender_s) : 0.0;
+  const double by_receipt_s = std::abs(now_s - accepted_s_);
+  elapsed_s_ = any_ ? std::max(by_receipt_s, std::min(by_sender_s, by_receipt_s + restart_s)) : 0.0;
   any_ = true;
   anew_in_a_row_ = 0;
   utime_ = utime;

@@ -30,8 +30,11 @@ class Order {
   /// says nothing new.
   bool accept(int64_t utime, double now_s, double restart_s);
 
-  /// From the message accepted before the last to the last, s, by their receipt or by their sender's clock, whichever
-  /// says more; 0 for the first.
+  /// Whether a message that was not accepted is older than the newest, not the same once more.
+  bool is_late(int64_t utime) const { return any_ && utime < utime_; }
+
+  /// From the message accepted before the last to the last, s, by their receipt; by their sender's clock where that
+  /// says more, but no more than `restart_s` more: no network holds a message back for longer. 0 for the first.
   double elapsed_s() const { return elapsed_s_; }
 
  private:

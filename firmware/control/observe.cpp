@@ -43,14 +43,19 @@ ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s
   const double by_receipt_s = arm.received_s - next.arm_received_s;
   const double by_sender_s = (static_cast<double>(arm.message->utime) - static_cast<double>(next.arm_utime)) * 1e-6;
   const bool gap = by_receipt_s > longest_gap_s(model, model.settings.ages.arm_state_lost_s);
-  const bool agrees = first || reachable(model, next, *arm.message, by_sender_s);
+  // By the sender's clock, as far as that agrees with this one: no network holds a message back for longer.
+  const double elapsed_s =
+      std::min(by_sender_s, by_receipt_s + longest_gap_s(model, model.settings.ages.arm_state_lost_s));
+  const bool agrees = first || reachable(model, next, *arm.message, elapsed_s);
   if (first || gap || !agrees) next.consistent_since_s = now_s;
   news.contradicts = !agrees && !gap;
   // Were there others in between, it was this side that did not look.
   if (!first && arm.count == next.arm_count + 1) news.silence_s = std::min(by_receipt_s, now_s - next.cycle_s);
   // Commands do not go on from the last one when that does not lead this arm any more.
-  if (next.commanding) next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, by_sender_s));
+  if (next.commanding) next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, elapsed_s));
   if (speaks_anew(model.settings.start_guard_s, arm, next)) next.arm_started_s = arm.received_s;
+  next.arm_rate_radps = JointVector::Zero(model.arm.joints);
+  if (!first && elapsed_s > 0.0) next.arm_rate_radps = (arm.message->position_rad - next.arm_position_rad) / elapsed_s;
   next.arm_count = arm.count;
   next.arm_received_s = arm.received_s;
   next.arm_utime = arm.message->utime;

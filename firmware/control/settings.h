@@ -75,7 +75,7 @@ struct Ages {
   double arm_state_s = 0.030;       ///< brake
   double arm_state_lost_s = 0.100;  ///< fault
   double consistent_s = 0.5;        ///< of arm state before anything moves
-  double old_place_s = 0.3;         ///< of an obstacle that has jumped: so long it counts
+  double old_place_s = 0.3;         ///< of an obstacle that has jumped or vanished: so long it counts
 };
 
 /// How far reports of obstacles can be trusted; each adds to the distance that is kept, as in ISO/TS 15066.

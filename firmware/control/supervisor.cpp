@@ -11,6 +11,7 @@ Supervision start(const Facts& facts, Mode mode, Fault fault) {
   if (facts.stop) return {mode, fault, "stopping"};
   if (facts.rival) return {mode, fault, "waiting: another controller commands the arm"};
   if (!facts.obstacles_known) return {Mode::kWait, Fault::kNone, "waiting for the first obstacle set"};
+  if (!facts.obstacles_fresh) return {mode, fault, "waiting: the obstacles are too old"};
   return {Mode::kHold, Fault::kNone, "holding"};
 }
 

@@ -30,7 +30,7 @@ struct Supervision {
 
 /// The modes and their transitions:
 ///
-///   WAIT  -> HOLD   the arm state is consistent and the obstacles are known
+///   WAIT  -> HOLD   the arm state is consistent, the obstacles are known and fresh
 ///   HOLD <-> TRACK  there is a fresh target; HOLD slows to rest and goes on avoiding
 ///   any  <-> BRAKE  arm state or obstacles too old, late, a rival, or asked to stop: to rest as fast as the joints can
 ///   any   -> FAULT  arm state lost or contradictory, or a wish that is not finite; from there as from WAIT

@@ -26,14 +26,14 @@ struct Admission::Scratch {
   ArmReader arm;
   target_t target;
   obstacles_t obstacles;
-  Jumps jumps;
+  OldPlaces old_places;
 };
 
 Admission::Admission(int joints, const Settings& settings, bool arm_is_clock, Dialect dialect)
     : joints_(joints),
       ages_(settings.ages),
       arm_is_clock_(arm_is_clock),
-      scratch_(new Scratch{{dialect, joints}, {}, {}, jumps_of(settings)}) {
+      scratch_(new Scratch{{dialect, joints}, {}, {}, old_places_of(settings)}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
 }
 
@@ -86,8 +86,11 @@ bool Admission::admit(const void* bytes, size_t size, double now_s, ObstacleSet&
     to.angular_velocity_radps = vector(from.angular_velocity);
     if (!complete(shape, to)) return reject("obstacles with impossible values");
   }
-  if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) return false;
-  scratch_->jumps.complete(value, obstacles_order_.elapsed_s(), now_s);
+  if (!obstacles_order_.accept(message.utime, now_s, ages_.obstacles_s)) {
+    if (obstacles_order_.is_late(message.utime)) scratch_->old_places.overhear(value, ages_.obstacles_s, now_s);
+    return false;
+  }
+  scratch_->old_places.complete(value, obstacles_order_.elapsed_s(), now_s);
   return true;
 }
 

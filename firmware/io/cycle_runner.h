@@ -29,7 +29,7 @@ class CycleRunner {
   void run(const Post& post, const Occasion& occasion);
 
   /// Nothing moves by command.
-  bool at_rest() const { return !state_.commanding || state_.velocity_radps.isZero(0.0); }
+  bool at_rest() const { return sidestep::at_rest(state_); }
 
   const Timing& timing() const { return timing_; }
 

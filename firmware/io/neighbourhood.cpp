@@ -12,7 +12,7 @@ namespace {
 // Obstacle 3 of neighbour 2 is called -20003.
 constexpr int kIdsOfANeighbour = 10000;
 
-/// Jumps are looked for in the whole.
+/// What jumps or vanishes is looked for in the whole.
 Settings without_old_places(Settings settings) {
   settings.ages.old_place_s = 0.0;
   return settings;

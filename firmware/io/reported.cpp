@@ -27,8 +27,8 @@ bool complete(Shape shape, Obstacle& obstacle) {
 }
 
 /// The paper's law is the paper's law and nothing more: it takes obstacles to be where they are said to be.
-Jumps jumps_of(const Settings& settings) {
-  return Jumps(settings.obstacle_speed_bound_mps, settings.law == Law::kPaper ? 0.0 : settings.ages.old_place_s);
+OldPlaces old_places_of(const Settings& settings) {
+  return OldPlaces(settings.obstacle_speed_bound_mps, settings.law == Law::kPaper ? 0.0 : settings.ages.old_place_s);
 }
 
 }  // namespace sidestep

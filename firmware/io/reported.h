@@ -1,7 +1,7 @@
 #pragma once
 
 #include "firmware/control/inputs.h"
-#include "firmware/control/jumps.h"
+#include "firmware/control/old_places.h"
 
 namespace sidestep {
 
@@ -17,7 +17,7 @@ Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion&
 bool complete(Target& target);
 bool complete(Shape shape, Obstacle& obstacle);
 
-/// The memory of jumps that the settings ask for.
-Jumps jumps_of(const Settings& settings);
+/// The memory of old places that the settings ask for.
+OldPlaces old_places_of(const Settings& settings);
 
 }  // namespace sidestep

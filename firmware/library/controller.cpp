@@ -81,7 +81,7 @@ struct Controller::Inside {
   Inside(Model the_model, Controller::Foresight foresight)
       : model(std::move(the_model)),
         adviser(model, foresight == Foresight::kWithinStep),
-        jumps(jumps_of(model.settings)) {}
+        old_places(old_places_of(model.settings)) {}
 
   /// The newest of a kind, and a place for the next, which counts only when it is found good.
   template <typename Message>
@@ -100,7 +100,7 @@ struct Controller::Inside {
 
   Model model;
   Adviser adviser;
-  Jumps jumps;
+  OldPlaces old_places;
   State state;
   Newest<sidestep::ArmState> arm;
   Newest<sidestep::Target> target;
@@ -141,7 +141,7 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
     sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
     if (!complete(static_cast<sidestep::Shape>(obstacles[i].shape), obstacle)) return false;
   }
-  inside_->jumps.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
+  inside_->old_places.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
   newest.take_draft(now_s);
   return true;
 }

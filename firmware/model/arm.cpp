@@ -14,6 +14,9 @@
 namespace sidestep {
 namespace {
 
+// Beyond what any joint does, and far from where products of them overflow.
+constexpr double kFastest_radps = 1e9, kSharpest_radps2 = 1e9;
+
 using sidestep::to_eigen;
 
 Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
@@ -118,10 +121,12 @@ void check_limits(const Arm& arm) {
     const std::string& name = arm.joint_names[static_cast<size_t>(i)];
     if (!(limits.lower_rad[i] < limits.upper_rad[i]))
       fail("joint '{}': lower limit {} must be below upper limit {}", name, limits.lower_rad[i], limits.upper_rad[i]);
-    if (!(std::isfinite(limits.velocity_radps[i]) && limits.velocity_radps[i] > 0.0))
-      fail("joint '{}': velocity limit {} must be finite and positive", name, limits.velocity_radps[i]);
-    if (!(std::isfinite(limits.acceleration_radps2[i]) && limits.acceleration_radps2[i] > 0.0))
-      fail("joint '{}': acceleration limit {} must be finite and positive", name, limits.acceleration_radps2[i]);
+    if (!(limits.velocity_radps[i] > 0.0 && limits.velocity_radps[i] <= kFastest_radps))
+      fail("joint '{}': velocity limit {} must be above 0 and at most {:g}", name, limits.velocity_radps[i],
+           kFastest_radps);
+    if (!(limits.acceleration_radps2[i] > 0.0 && limits.acceleration_radps2[i] <= kSharpest_radps2))
+      fail("joint '{}': acceleration limit {} must be above 0 and at most {:g}", name, limits.acceleration_radps2[i],
+           kSharpest_radps2);
   }
 }
 

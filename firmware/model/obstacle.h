@@ -23,7 +23,7 @@ struct Obstacle {
 /// The full set of obstacles at one instant. Large: lives in a mailbox or on the heap, never on a stack.
 struct ObstacleSet {
   int count = 0;
-  int old_places = 0;  ///< the last of them: no obstacles, but places that some have just jumped from
+  int old_places = 0;  ///< the last of them: not of the set, but where some have just been
   std::array<Obstacle, kMaxObstacles> obstacles;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <sstream>
 
 #include "firmware/control/settings.h"
 #include "firmware/model/arm.h"
@@ -82,12 +83,13 @@ std::vector<std::string> odd_shapes(const Arm& arm) {
 /// For every line of n joint positions on standard input the pose of the tip: x y z, then the rotation by rows.
 void print_poses(const Arm& arm) {
   JointVector q_rad(arm.joints);
-  const auto read = [&] {
-    for (double& angle_rad : q_rad)
-      if (!(std::cin >> angle_rad)) return false;
-    return true;
-  };
-  while (read()) {
+  std::string line, more;
+  for (int number = 1; std::getline(std::cin, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    std::istringstream stream(line);
+    for (double& angle_rad : q_rad) stream >> angle_rad;
+    if (!stream || stream >> more)
+      throw std::runtime_error(fmt::format("standard input, line {}: not {} joint positions", number, arm.joints));
     const Posture posture = forward(arm, q_rad);
     const Matrix3& r = posture.tool_rotation;
     fmt::print("{:.17g} {:.17g} {:.17g}", posture.tool_position.x(), posture.tool_position.y(),

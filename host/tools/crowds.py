@@ -20,6 +20,13 @@ def sphere(number, x, y, z, radius, vx=0.0, vy=0.0, vz=0.0):
     return obstacle(number, obstacle_t.SPHERE, [radius], [x, y, z], [vx, vy, vz])
 
 
+def radius(text):
+    """A controller rejects the whole set for one that is below 0."""
+    if (value := finite(text)) < 0.0:
+        raise ValueError(f"radius {text} is below 0")
+    return value
+
+
 def straight(spheres):
     """Seven numbers each: centre, radius, velocity."""
     return lambda t: [sphere(i, *(p + v * t for p, v in zip(s, s[4:])), *s[3:]) for i, s in enumerate(spheres)]
@@ -44,7 +51,10 @@ def from_csv(file):
         rows = csv.DictReader(stream)
         for row in rows:
             try:
-                t_s, *place = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m", "radius_m"))
+                if None in row.values():
+                    raise ValueError("too few columns")
+                t_s, *centre = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m"))
+                place = [*centre, radius(row["radius_m"])]
                 tracks.setdefault(id_of(row["id"]), []).append((t_s, place))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{file}, line {rows.line_num}: {error}") from None

@@ -2,13 +2,15 @@
 """Publish obstacles on OBSTACLES, 50 times a second, until Ctrl-C.
 
 Spheres that move with their velocity, or a crowd: from a CSV file, random, or a walking person. The message is always
-the full set: what is not in it is gone. No obstacle at all sends the empty set.
+the full set: what is not in it counts for 0.3 s more and is gone. No obstacle at all sends the empty set.
 """
 import argparse
 import time
 
 import bus
 import crowds
+
+MOST = 4096  # a controller rejects what has more
 
 
 def send(crowd, lcm_url):
@@ -26,6 +28,7 @@ def numbers(text):
     values = [bus.finite(number) for number in text.split(",")]
     if len(values) not in (4, 7):
         raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
+    crowds.radius(text.split(",")[3])
     return values + [0.0] * (7 - len(values))
 
 
@@ -60,6 +63,8 @@ def main():
     arguments = parser.parse_intermixed_args(bus.words())
     try:
         crowd = crowd_of(arguments)
+        if (most := len(crowd(0.0))) > MOST:
+            raise ValueError(f"{most} obstacles are more than the {MOST} that a message may have")
     except KeyError as error:
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Publish a target on TARGET, 50 times a second, until Ctrl-C: a point, on a line, on a path, or under the arrow keys."""
+"""Publish a target on TARGET, 50 times a second, until Ctrl-C: a point, on a line, on a path, or under the arrow keys.
+
+The newest target counts: beside another who sends some, as the simulator does, the arm follows both in turns.
+"""
 import argparse
 import curses
 import math

@@ -26,9 +26,14 @@ def outlook(status):
     return "no way known" if status.foresight == status.WAITING else ""
 
 
+def words(status):
+    """Its message without what a terminal would obey."""
+    return "".join(letter if letter.isprintable() else "?" for letter in status.message)
+
+
 def brief(status):
     return (f"{bus.MODES.get(status.mode, status.mode):5}  target {status.target_distance:6.3f} m  clearance "
-            f"{status.clearance:6.3f} m  cycle {status.cycle_time * 1e6:5.0f} us  {outlook(status)}  {status.message}")
+            f"{status.clearance:6.3f} m  cycle {status.cycle_time * 1e6:5.0f} us  {outlook(status)}  {words(status)}")
 
 
 def lines(heard):
@@ -37,7 +42,7 @@ def lines(heard):
         return ["waiting for CONTROLLER_STATUS"]
     limits = ", ".join(name for name, bit in LIMITING.items() if status.limiting & bit) or "nothing"
     obstacles = heard["OBSTACLES"].num_obstacles if "OBSTACLES" in heard else "none heard"
-    shown = [f"{bus.MODES.get(status.mode, status.mode)}   {outlook(status)}   {status.message}", "",
+    shown = [f"{bus.MODES.get(status.mode, status.mode)}   {outlook(status)}   {words(status)}", "",
              f"to target {status.target_distance:8.3f} m  {bar(status.target_distance, 1.0)}",
              f"clearance {status.clearance:8.3f} m  {bar(status.clearance, 0.5)}  {status.nearest_link}"
              f" and obstacle {status.nearest_obstacle}",

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/scratch.h"
@@ -65,6 +67,22 @@ void what_the_controller_would_refuse_ends_with_code_2_and_one_line(void**) {
   assert_int_equal(arm_check("no/such.urdf").code, 2);
 }
 
+void joint_positions_that_are_none_are_refused_with_their_line(void**) {
+  const auto poses = [](const std::string& lines) {
+    Process process(
+        {"/bin/sh", "-c", "printf '" + lines + "' | build/arm-check urdf/lwa3.urdf --base base_link --tip tool --fk"});
+    const int code = process.wait(kLimit_s);
+    return Ended{code, process.output()};
+  };
+  const Ended good = poses("0 0 0 0 0 0 0\\n\\n0.1 0 0 0 0 0 0\\n");
+  check(good.code == 0 && std::count(good.output.begin(), good.output.end(), '\n') == 2, "%s", good.output.c_str());
+  for (const char* bad : {"1 2 3", "0 0 0 0 0 0 nan", "0 0 0 0 0 0 0 0", "0 0 0 x 0 0 0"}) {
+    const Ended ended = poses(std::string("0 0 0 0 0 0 0\\n") + bad + "\\n");
+    check(ended.code == 2 && has(ended, "line 2: not 7 joint positions"), "%s: %d, %s", bad, ended.code,
+          ended.output.c_str());
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -72,6 +90,7 @@ int main() {
       cmocka_unit_test_teardown(an_arm_without_oddities_ends_with_code_0, test::kill_processes),
       cmocka_unit_test_teardown(a_mesh_is_enclosed_and_its_slack_told, test::kill_processes),
       cmocka_unit_test_teardown(what_is_odd_is_told_with_code_1, test::kill_processes),
+      cmocka_unit_test_teardown(joint_positions_that_are_none_are_refused_with_their_line, test::kill_processes),
       cmocka_unit_test_teardown(what_the_controller_would_refuse_ends_with_code_2_and_one_line, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "firmware/control/jumps.h"
+#include "firmware/control/old_places.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -107,11 +107,11 @@ void in_contact_at_the_start_the_distance_only_opens(void**) {
 void an_obstacle_that_jumps_counts_in_both_places(void**) {
   ClosedLoop loop = tracking("sidestep");
   const Ages ages;
-  const auto jumps = std::make_unique<Jumps>(loop.model.settings.obstacle_speed_bound_mps, ages.old_place_s);
+  const auto old_places = std::make_unique<OldPlaces>(loop.model.settings.obstacle_speed_bound_mps, ages.old_place_s);
   const auto send = [&](const Vector3& place_m) {
     loop.obstacles->count = 0;
     loop.add_sphere(place_m, Vector3::Zero(), 0.1);
-    jumps->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
+    old_places->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
     loop.cycle();
     return loop.last.report.clearance_m;
   };

@@ -26,7 +26,7 @@ void CommandCheck::complain(const char* what, int joint, double value, double bo
 
 void CommandCheck::begin(const JointVector& position_rad, const JointVector& velocity_radps) {
   position_rad_ = position_rad;
-  velocity_radps_ = velocity_radps;
+  velocity_radps_ = rate_radps_ = velocity_radps;
 }
 
 void CommandCheck::feed(const JointVector& position_rad, const JointVector& velocity_radps) {
@@ -42,13 +42,19 @@ void CommandCheck::feed(const JointVector& position_rad, const JointVector& velo
     if (std::abs(v - v_last) > dv_max + kRounding) complain("velocity changes by", i, v - v_last, dv_max);
     if (std::abs(p - p_last) > v_max * period_s_ + kRounding)
       complain("position jumps by", i, p - p_last, v_max * period_s_);
+    const double rate = (p - p_last) / period_s_, rate_last = rate_radps_[i];
+    if (std::abs(rate - rate_last) > dv_max + kRounding / period_s_)
+      complain("position's rate changes by", i, rate - rate_last, dv_max);
     const double led = p_last + v * period_s_;
-    if (std::abs(p - led) > kRounding) complain("position is not where the velocity leads:", i, p, led);
+    if (!catching_up_ && std::abs(p - led) > kRounding)
+      complain("position is not where the velocity leads:", i, p, led);
     const double out = outside(p, limits_.lower_rad[i], limits_.upper_rad[i]);
     const double out_last = outside(p_last, limits_.lower_rad[i], limits_.upper_rad[i]);
     if (out > out_last + kRounding) complain("farther outside the position limits:", i, out, out_last);
   }
-  begin(position_rad, velocity_radps);
+  rate_radps_ = (position_rad - position_rad_) / period_s_;
+  position_rad_ = position_rad;
+  velocity_radps_ = velocity_radps;
 }
 
 void CommandCheck::end() {

@@ -178,6 +178,9 @@ def refusals():
         no_robot, log = Path(name) / "no-robot.yaml", Path(name) / "old.lcmlog"
         no_robot.write_text("rate_hz: 100\n")
         log.write_text("old")
+        short_row, thin = Path(name) / "short.csv", Path(name) / "thin.csv"
+        short_row.write_text("t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0\n")
+        thin.write_text("t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,-1\n")
         no_rows = Path(name) / "no-rows.csv"
         no_rows.write_text("t_s,id,x_m,y_m,z_m,radius_m\n")
         nonsense = Path(name) / "nonsense"  # neither YAML nor XML
@@ -188,6 +191,10 @@ def refusals():
                 (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres do not go together"),
                 (send_obstacles, ["--csv", ""], 2, "No such file"),
                 (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}"),
+                (send_obstacles, ["0,0,1,-0.1"], 2, "radius -0.1 is below 0"),
+                (send_obstacles, ["--random", "5000"], 2, "5000 obstacles are more than"),
+                (send_obstacles, ["--csv", short_row], 2, f"{short_row}, line 2: too few columns"),
+                (send_obstacles, ["--csv", thin], 2, f"{thin}, line 2: radius -1 is below 0"),
                 (send_obstacles, ["--csv", no_rows], 2, f"{no_rows}: no rows"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
                 (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "listen to '('"),

@@ -86,6 +86,22 @@ void returning_from_outside_is_no_offence(void**) {
   assert_string_equal(returning.complaint().c_str(), "");
 }
 
+/// An arm that is moved is caught up with by positions beside the velocity; but only as a joint could.
+void a_hop_is_seen_even_while_catching_up(void**) {
+  CommandCheck soft({all(-1), all(1), all(2), all(10)}, kPeriod_s), hop = soft;
+  for (CommandCheck* watch : {&soft, &hop}) {
+    watch->grant_catching_up();
+    watch->begin(all(0.5), all(0));
+  }
+  soft.feed(all(0.501), all(0));
+  soft.feed(all(0.503), all(0));
+  assert_string_equal(soft.complaint().c_str(), "");
+  soft.feed(all(0.506 + 1e-6), all(0));
+  assert_true(soft.complaint().find("rate changes") != std::string::npos);
+  hop.feed(all(0.502), all(0));
+  assert_true(hop.complaint().find("rate changes") != std::string::npos);
+}
+
 void values_that_are_not_finite_are_seen(void**) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     Stream position, velocity;
@@ -134,6 +150,7 @@ int main() {
       cmocka_unit_test(too_much_velocity_is_seen),
       cmocka_unit_test(leaving_the_position_limits_is_seen),
       cmocka_unit_test(returning_from_outside_is_no_offence),
+      cmocka_unit_test(a_hop_is_seen_even_while_catching_up),
       cmocka_unit_test(values_that_are_not_finite_are_seen),
       cmocka_unit_test(a_wrong_number_of_joints_is_seen),
       cmocka_unit_test(a_stream_that_begins_elsewhere_is_seen),

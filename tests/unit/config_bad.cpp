@@ -98,6 +98,8 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"limits: {velocity_radps: .nan}", "limits.velocity_radps"},
       {"limits: {velocity_radps: 0}", "velocity"},
       {"limits: {velocity_radps: .inf}", "velocity"},
+      {"limits: {velocity_radps: 1e300}", "velocity"},
+      {"limits: {acceleration_radps2: 1e300}", "acceleration"},
       {"limits: {acceleration_radps2: -10}", "acceleration"},
       {"limits: {acceleration_radps2: .inf}", "acceleration"},
       {"limits: {lower_rad: 2, upper_rad: 1}", "lower"},

@@ -1,8 +1,10 @@
 #include <cmath>
 #include <vector>
 
+#include "firmware/control/present.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
+#include "tests/support/random.h"
 
 using namespace sidestep;
 using test::check_stream;
@@ -53,6 +55,48 @@ void old_obstacles_brake_and_grow(void**) {
   }
 }
 
+/// After every wait and every fault.
+void on_old_obstacles_nothing_starts(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = test::at_home(law);
+    loop.add_sphere(Vector3(-0.3, 0.1, 0.8), Vector3(0, 0, 0));
+    loop.arm_speaks = false;
+    loop.run(0.1);
+    loop.obstacles_speak = false;
+    const auto stands_still = [&](Mode mode) {
+      const JointVector before_rad = loop.arm.position_rad;
+      loop.arm_speaks = true;
+      for (int cycle = 0; cycle < 200; ++cycle) {
+        loop.cycle();
+        check(loop.mode() == mode && !loop.last.commanding, "%s: mode %d", law, static_cast<int>(loop.mode()));
+      }
+      assert_true(loop.says("obstacles are too old"));
+      check_near(loop.arm.position_rad, before_rad, 0);
+    };
+    stands_still(Mode::kWait);
+    loop.obstacles_speak = true;
+    assert_true(loop.run_until(Mode::kHold, 0.1));
+    loop.run(0.5);
+    loop.obstacles_speak = loop.arm_speaks = false;
+    assert_true(loop.run_until(Mode::kFault, 0.5));
+    loop.run(1.0);
+    stands_still(Mode::kFault);
+    check_stream(loop);
+  }
+}
+
+/// As in a lockstep world that starts over: obstacles heard in a time to come are at least where they were.
+void obstacles_of_a_time_to_come_are_not_farther_away(void**) {
+  const Model model = test::lwa3_model("sidestep");
+  ObstacleSet set;
+  set.count = 1;
+  set.obstacles[0] = sphere_obstacle(Vector3(1, 0, 0.5), 0.1);
+  set.obstacles[0].velocity_mps = Vector3(-1, 0, 0);
+  const ObstacleView view = view_obstacles(model, {&set, 1000.0, 1}, 0.0);
+  const Capsule seen = view.at(0).capsule;
+  check(seen.radius_m >= 0.1 && seen.start.x() <= 1.0, "radius %g m at %g m", seen.radius_m, seen.start.x());
+}
+
 void a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
@@ -97,6 +141,27 @@ void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
 }
 
 /// No cycles run meanwhile, as in lockstep, where the arm's states are the clock.
+/// However much time the arm says has passed, no more has than was waited for it.
+void an_arm_whose_clock_runs_ahead_may_not_jump_either(void**) {
+  for (const char* law : kLaws) {
+    ClosedLoop loop = tracking(law);
+    loop.arm_clock_offset_us += 5'000'000;
+    loop.arm.position_rad[0] += 0.5;
+    loop.cycle();
+    check(loop.mode() == Mode::kFault && loop.says("jumped"), "%s: %s", law, loop.last.report.message);
+
+    test::Random random(1);
+    ClosedLoop wild = test::at_home(law);
+    wild.target_speaks = true;
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      wild.arm.position_rad = random.posture(wild.model.arm, 0.9);
+      wild.arm_clock_offset_us += 3'000'000;
+      wild.cycle();
+      check(wild.mode() == Mode::kWait && !wild.last.commanding, "%s: %s", law, wild.last.report.message);
+    }
+  }
+}
+
 void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
   for (const char* law : kLaws) {
     const struct {
@@ -204,8 +269,11 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(an_old_target_is_held_and_a_new_one_tracked_again),
       cmocka_unit_test(old_obstacles_brake_and_grow),
+      cmocka_unit_test(on_old_obstacles_nothing_starts),
+      cmocka_unit_test(obstacles_of_a_time_to_come_are_not_farther_away),
       cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
       cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
+      cmocka_unit_test(an_arm_whose_clock_runs_ahead_may_not_jump_either),
       cmocka_unit_test(a_silence_of_the_clock_itself_is_judged_as_any_other),
       cmocka_unit_test(after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is),
       cmocka_unit_test(a_foreign_command_counts_for_half_a_second),

@@ -185,6 +185,52 @@ void commands_follow_an_arm_that_is_pushed_without_a_hop(void**) {
   }
 }
 
+/// As by a hand that moves fast, or while the arm brakes for want of obstacles: the command comes after it, but never
+/// faster than a joint could.
+void commands_come_after_an_arm_that_was_moved_as_a_joint_could(void**) {
+  for (const char* law : kLaws) {
+    for (const bool while_braking : {false, true}) {
+      for (const double push_radps : {0.4, 1.0, 1.9}) {
+        ClosedLoop loop(lwa3_model(law), home_rad());
+        loop.commands.grant_catching_up();
+        loop.run(1.0);
+        JointVector moved_rad = loop.arm.position_rad;
+        loop.obstacles_speak = !while_braking;
+        loop.run(0.2);
+        for (int cycle = 0; cycle < 300; ++cycle) {
+          if (cycle >= 150) loop.obstacles_speak = true;
+          if (cycle * 0.01 * push_radps < 0.8) moved_rad[0] += 0.01 * push_radps;
+          loop.arm.position_rad = moved_rad;
+          loop.arm.velocity_radps.setZero();
+          loop.cycle();
+          check(loop.mode() == (loop.obstacles_speak ? Mode::kHold : Mode::kBrake), "%s", loop.last.report.message);
+        }
+        check_stream(loop, law, 0);
+        const double behind_rad = std::abs(moved_rad[0] - loop.last.command.position_rad[0]);
+        check(behind_rad < 0.6 * loop.model.settings.following_error_rad, "%s: %g rad behind", law, behind_rad);
+      }
+    }
+  }
+}
+
+/// Of what an arm says of its velocity and what its positions say, the lesser counts.
+void a_measured_velocity_that_the_positions_contradict_is_not_commanded(void**) {
+  for (const char* law : kLaws) {
+    for (const double wrong_radps : {0.5, -1.5, 1000.0}) {
+      ClosedLoop loop(lwa3_model(law), home_rad());
+      for (int cycle = 0; cycle < 100; ++cycle) {
+        if (!loop.last.commanding) loop.arm.velocity_radps.setConstant(wrong_radps);
+        const Inputs inputs = loop.receive();
+        const Result result = step(loop.model, loop.state, inputs, loop.now_s());
+        if (result.command.velocity_radps.size() > 0)  // in lockstep that is said while waiting, too
+          check_near(result.command.velocity_radps, JointVector::Zero(7).eval(), 0);
+        loop.follow(result);
+      }
+      check(loop.mode() == Mode::kHold, "%s, %g: %s", law, wrong_radps, loop.last.report.message);
+    }
+  }
+}
+
 std::vector<double> life(const Model& model, unsigned seed) {
   std::vector<double> all;
   Random random(seed);
@@ -222,6 +268,8 @@ int main() {
       cmocka_unit_test(an_arm_outside_its_limits_is_led_back_inside),
       cmocka_unit_test(commands_do_not_run_away_from_an_arm_that_is_held_fast),
       cmocka_unit_test(commands_follow_an_arm_that_is_pushed_without_a_hop),
+      cmocka_unit_test(commands_come_after_an_arm_that_was_moved_as_a_joint_could),
+      cmocka_unit_test(a_measured_velocity_that_the_positions_contradict_is_not_commanded),
       cmocka_unit_test(the_same_inputs_give_the_same_commands_bit_for_bit),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

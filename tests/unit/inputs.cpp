@@ -170,6 +170,19 @@ void one_message_from_the_far_future_does_not_lock_its_sender_out(void**) {
   assert_true(order.accept(1'060'000, 1.06, 0.1));
 }
 
+/// Of a sender that stamps in nanoseconds, every message would be seconds after the one before.
+void what_a_sender_says_of_elapsed_time_is_believed_as_far_as_a_network_delays(void**) {
+  Order order;
+  assert_true(order.accept(1'000'000, 1.00, 0.1));
+  check_near(order.elapsed_s(), 0.0, 0);
+  assert_true(order.accept(1'020'000, 1.01, 0.1));
+  check_near(order.elapsed_s(), 0.02, 1e-12);
+  assert_true(order.accept(1'021'000, 1.05, 0.1));
+  check_near(order.elapsed_s(), 0.04, 1e-12);
+  assert_true(order.accept(11'021'000, 1.06, 0.1));
+  check_near(order.elapsed_s(), 0.11, 1e-12);
+}
+
 /// In lockstep the arm's utime is the clock as well.
 void where_the_messages_are_the_clock_old_ones_are_dropped_too(void**) {
   Order order;
@@ -197,6 +210,7 @@ int main() {
       cmocka_unit_test(a_sender_that_starts_anew_is_accepted),
       cmocka_unit_test(a_message_that_is_very_late_is_dropped),
       cmocka_unit_test(one_message_from_the_far_future_does_not_lock_its_sender_out),
+      cmocka_unit_test(what_a_sender_says_of_elapsed_time_is_believed_as_far_as_a_network_delays),
       cmocka_unit_test(where_the_messages_are_the_clock_old_ones_are_dropped_too),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -376,6 +376,7 @@ State reachable_state(Random& random, const JointVector& measured_rad, double no
   const VelocityRange lasting = lasting_range(model().arm.limits, state.position_rad.cwiseMin(measured_rad),
                                               state.position_rad.cwiseMax(measured_rad), kPeriod_s);
   state.velocity_radps = random.joints(7, -2, 2).cwiseMax(lasting.lower_radps).cwiseMin(lasting.upper_radps);
+  state.rate_radps = state.velocity_radps;
   state.arm_count = 1;
   state.arm_utime = 1;
   state.arm_received_s = now_s;

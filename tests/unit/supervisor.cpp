@@ -70,6 +70,13 @@ void tracking_needs_everything_fresh(void**) {
   });
 }
 
+void what_stood_still_does_not_start_on_old_obstacles(void**) {
+  check_always("start", [](const auto& last, const Facts& f, const auto& next) {
+    const bool stood = last.mode == Mode::kWait || last.mode == Mode::kFault;
+    return !stood || f.obstacles_fresh || !moves(next.mode);
+  });
+}
+
 void a_wish_to_stop_never_leads_to_moving(void**) {
   check_always("stop", [](const auto&, const Facts& f, const auto& next) { return !f.stop || !moves(next.mode); });
 }
@@ -105,10 +112,11 @@ void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
   });
 }
 
-void a_fault_lasts_until_the_arm_is_consistent_again(void**) {
+void a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh(void**) {
   check_always("latched", [](const Supervision& last, const Facts& f, const auto& next) {
     if (last.mode != Mode::kFault || f.arm_broke || f.arm_lost) return true;
-    const bool ready = f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting;
+    const bool obstacles = f.obstacles_fresh || !f.obstacles_known;  // without any it waits
+    const bool ready = f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && obstacles;
     if (ready && !f.stop && !f.rival) return next.mode != Mode::kFault;
     return next.mode == Mode::kFault && next.fault == last.fault;
   });
@@ -207,13 +215,14 @@ void an_ordinary_run(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(tracking_needs_everything_fresh),
+      cmocka_unit_test(what_stood_still_does_not_start_on_old_obstacles),
       cmocka_unit_test(a_wish_to_stop_never_leads_to_moving),
       cmocka_unit_test(beside_another_controller_nothing_moves),
       cmocka_unit_test(nothing_moves_without_a_fresh_arm_state),
       cmocka_unit_test(nothing_starts_without_consistent_arm_states_and_known_obstacles),
       cmocka_unit_test(a_start_is_always_a_hold),
       cmocka_unit_test(a_lost_or_contradictory_arm_is_a_fault_of_that_name),
-      cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_again),
+      cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh),
       cmocka_unit_test(only_a_fault_has_a_fault),
       cmocka_unit_test(old_obstacles_and_lateness_brake),
       cmocka_unit_test(without_a_fresh_target_it_holds),
