@@ -62,6 +62,7 @@ class __attribute__((visibility("default"))) Controller {
     Vector velocity_mps{};
     Vector angular_velocity_radps{};
   };
+  /// An obstacle that is left out counts for 0.3 s more, moved on with its velocity.
   /// Returns false, and the set before it stays, when a number cannot be true or there are too many.
   bool set_obstacles(const Obstacle* obstacles, int count, double now_s);
 

@@ -62,8 +62,7 @@ void only_the_lwa3_is_judged_as_the_lwa3(void**) {
 
 std::vector<std::string> configs_with_the_lwa3() {
   std::vector<std::string> files{"host/campaign/benchmark.yaml"};
-  for (const char* name : {"lwa3", "left", "right"})
-    files.push_back(std::string("firmware/config/") + name + ".yaml");
+  for (const char* name : {"lwa3", "left", "right"}) files.push_back(std::string("firmware/config/") + name + ".yaml");
   return files;
 }
 
