@@ -60,8 +60,7 @@ double catch_up(const Model& model, const State& state, const ArmState& arm, int
 /// How fast the commanded position of a joint moves, rad/s: with the velocity, and where the arm has fallen too far
 /// behind or been moved closer to it, but as a joint could.
 double commanded_rate(const Model& model, const State& state, const ArmState& arm, int joint, double velocity_radps) {
-  const bool moves = state.supervision.mode == Mode::kHold || state.supervision.mode == Mode::kTrack;
-  const double gap_rad = moves ? catch_up(model, state, arm, joint) : 0.0;
+  const double gap_rad = moves(state.supervision.mode) ? catch_up(model, state, arm, joint) : 0.0;
   const double last_radps = state.rate_radps[joint];
   if (gap_rad == 0.0 && last_radps == state.velocity_radps[joint]) return velocity_radps;
   const double period_s = model.settings.period_s(), acceleration_radps2 = model.arm.limits.acceleration_radps2[joint];
@@ -117,7 +116,7 @@ JointVector keep_clear(const Model& model, const Situation& situation, const Arm
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
-  if (mode != Mode::kTrack && mode != Mode::kHold) return wish.velocity_radps;
+  if (!moves(mode)) return wish.velocity_radps;
   const Surroundings around{model.arm,           situation.posture,
                             arm.position_rad,    state.velocity_radps,
                             situation.clearance, situation.obstacles,
@@ -135,8 +134,7 @@ Command gate(const Model& model, const ArmState& arm, const VelocityRange& range
              State& next, int& limiting) {
   const double period_s = model.settings.period_s();
   const JointLimits& limits = model.arm.limits;
-  const Mode mode = next.supervision.mode;
-  if (mode == Mode::kHold || mode == Mode::kTrack)
+  if (moves(next.supervision.mode))
     limiting |= apply_limits(limits, range, next.velocity_radps, period_s, velocity_radps);
   else
     velocity_radps = brake(limits, next.velocity_radps, period_s);

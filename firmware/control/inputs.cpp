@@ -41,6 +41,11 @@ bool plausible(const Obstacle& obstacle) {
          within(obstacle.angular_velocity_radps, kLargestRate_radps);
 }
 
+double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s) {
+  const double apart_s = 1e-6 * (static_cast<double>(later_utime) - static_cast<double>(utime));
+  return std::min(apart_s, received_apart_s + slack_s);
+}
+
 bool Order::starts_anew(int64_t utime, double now_s, double restart_s) {
   const bool silent = std::abs(now_s - accepted_s_) > restart_s;  // or the clock was set back
   if (silent) return utime != utime_;
@@ -53,9 +58,8 @@ bool Order::starts_anew(int64_t utime, double now_s, double restart_s) {
 
 bool Order::accept(int64_t utime, double now_s, double restart_s) {
   if (any_ && utime <= utime_ && !starts_anew(utime, now_s, restart_s)) return false;
-  const double by_sender_s = 1e-6 * (static_cast<double>(utime) - static_cast<double>(utime_));
   const double by_receipt_s = std::abs(now_s - accepted_s_);
-  elapsed_s_ = any_ ? std::max(by_receipt_s, std::min(by_sender_s, by_receipt_s + restart_s)) : 0.0;
+  elapsed_s_ = any_ ? std::max(by_receipt_s, sent_apart_s(utime_, utime, by_receipt_s, restart_s)) : 0.0;
   any_ = true;
   anew_in_a_row_ = 0;
   utime_ = utime;

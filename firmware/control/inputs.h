@@ -21,6 +21,10 @@ struct Latest {
   bool fresh(double now_s, double limit_s) const { return message && age_s(now_s) >= 0.0 && age_s(now_s) <= limit_s; }
 };
 
+/// From one message to another by their sender's clock, s, as far as that agrees with how far apart they were received:
+/// no network holds a message back for longer than slack_s.
+double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s);
+
 /// Decides by its utime whether a message is newer than all before it on its channel.
 class Order {
  public:
@@ -34,7 +38,7 @@ class Order {
   bool is_late(int64_t utime) const { return any_ && utime < utime_; }
 
   /// From the message accepted before the last to the last, s, by their receipt; by their sender's clock where that
-  /// says more, but no more than `restart_s` more: no network holds a message back for longer. 0 for the first.
+  /// says more, with `restart_s` of slack. 0 for the first.
   double elapsed_s() const { return elapsed_s_; }
 
  private:

@@ -26,7 +26,7 @@ struct Target {
 };
 
 struct Command {
-  JointVector position_rad;    ///< where the velocity leads in one period
+  JointVector position_rad;    ///< where the velocity leads in one period; beside that while an arm is caught up with
   JointVector velocity_radps;  ///< for the coming period
 };
 

@@ -41,11 +41,9 @@ ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s
   if (arm.count == next.arm_count) return news;
   const bool first = next.arm_count == 0;
   const double by_receipt_s = arm.received_s - next.arm_received_s;
-  const double by_sender_s = (static_cast<double>(arm.message->utime) - static_cast<double>(next.arm_utime)) * 1e-6;
-  const bool gap = by_receipt_s > longest_gap_s(model, model.settings.ages.arm_state_lost_s);
-  // By the sender's clock, as far as that agrees with this one: no network holds a message back for longer.
-  const double elapsed_s =
-      std::min(by_sender_s, by_receipt_s + longest_gap_s(model, model.settings.ages.arm_state_lost_s));
+  const double lost_s = longest_gap_s(model, model.settings.ages.arm_state_lost_s);
+  const bool gap = by_receipt_s > lost_s;
+  const double elapsed_s = sent_apart_s(next.arm_utime, arm.message->utime, by_receipt_s, lost_s);
   const bool agrees = first || reachable(model, next, *arm.message, elapsed_s);
   if (first || gap || !agrees) next.consistent_since_s = now_s;
   news.contradicts = !agrees && !gap;

@@ -45,7 +45,9 @@ bool OldPlaces::counts(const OldPlace& place, double now_s) const {
   return place.since_s <= now_s && place.since_s + memory_s_ > now_s + kRounding_s;
 }
 
-void OldPlaces::remember_jump(const OldPlace& place) {
+void OldPlaces::remember_jump(OldPlace place) {
+  place.obstacle.velocity_mps.setZero();
+  place.obstacle.angular_velocity_radps.setZero();
   jumped_[next_jump_] = place;
   next_jump_ = (next_jump_ + 1) % kMostJumps;
 }

@@ -8,9 +8,9 @@
 namespace sidestep {
 
 /// Remembers where obstacles were. One that is suddenly elsewhere, farther away than it could move, may be there; but
-/// it may also be a mistake of whoever reports it, so that its old place counts as well for a short while. So does one
-/// that is no longer reported, until it comes back: somebody may have lost sight of it, or two who report each know but
-/// their own. Old places move on with the velocity that was reported.
+/// it may also be a mistake of whoever reports it, its velocity included, so that its old place counts as well for a
+/// short while. So does one that is no longer reported, moving on as it did, until it comes back: somebody may have
+/// lost sight of it, or two who report each know but their own.
 ///
 /// Large, like an ObstacleSet. Obstacles are the same when their id is; the k-th of several with one id is the same as
 /// the k-th in the set before.
@@ -48,7 +48,7 @@ class OldPlaces {
   void sort(const ObstacleSet& set);
   void compare(const ObstacleSet& set, double elapsed_s, double now_s);
   bool could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const;
-  void remember_jump(const OldPlace& place);
+  void remember_jump(OldPlace place);
   void add(const OldPlace& place, double now_s, ObstacleSet& set) const;
 
   double speed_bound_mps_, memory_s_;

@@ -28,6 +28,11 @@ struct Supervision {
   const char* message = "starting";
 };
 
+/// The law and the shield have a say; in all other modes commands brake or rest.
+inline bool moves(Mode mode) {
+  return mode == Mode::kHold || mode == Mode::kTrack;
+}
+
 /// The modes and their transitions:
 ///
 ///   WAIT  -> HOLD   the arm state is consistent, the obstacles are known and fresh

@@ -25,11 +25,11 @@ def send(crowd, lcm_url):
 
 
 def numbers(text):
-    values = [bus.finite(number) for number in text.split(",")]
-    if len(values) not in (4, 7):
+    words = text.split(",")
+    if len(words) not in (4, 7):
         raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
-    crowds.radius(text.split(",")[3])
-    return values + [0.0] * (7 - len(values))
+    centre, velocity = ([bus.finite(word) for word in part] for part in (words[:3], words[4:]))
+    return [*centre, crowds.radius(words[3]), *(velocity or [0.0] * 3)]
 
 
 def count(text):

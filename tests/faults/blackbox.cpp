@@ -22,23 +22,23 @@ namespace {
 namespace fs = std::filesystem;
 using Status = controller_status_t;
 
-/// The LWA3's configuration with an empty folder for logs.
+/// The LWA3's configuration with an empty folder for logs of 4 s.
 std::string config_with(const std::string& folder) {
   fs::remove_all(folder);
   const std::string text =
       test::replaced(test::text_of("firmware/config/lwa3.yaml"), "folder: build/blackbox", "folder: " + folder);
-  return test::scratch_file("blackbox.yaml", text);
+  return test::scratch_file("blackbox.yaml", test::replaced(text, "seconds: 10", "seconds: 4"));
 }
 
 std::string log_folder() {
   return test::scratch_folder() + "/logs";
 }
 
-std::vector<std::string> logs() {
+/// Those that are complete and were written for this reason, the oldest first.
+std::vector<std::string> logs(const std::string& reason) {
   std::vector<std::string> files;
-  if (fs::exists(log_folder()))
-    for (const auto& entry : fs::directory_iterator(log_folder())) files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
+  for (const std::string& file : test::logs_in(log_folder()))
+    if (file.find("-" + reason + ".lcmlog") != std::string::npos) files.push_back(file);
   return files;
 }
 
@@ -54,27 +54,56 @@ struct Scene {
                         test::private_lcm_url() + "'"}) {
     arm.target_m = Vector3(0.1, 0.45, 0.7);
     check(arm.run_until(Status::TRACK, 10.0), "%s", controller.output().c_str());
-    run(1.0);
+    track();
   }
 
-  void run(double duration_s) {
-    for (int i = 0; i * 0.25 < duration_s; ++i) {
+  /// Until it has tracked for a second and a half on end. A pause of the machine may have it begin again.
+  void track() {
+    int on_end = 0;
+    for (int i = 0; on_end < 6; ++i) {
+      check(i < 60, "%s", controller.output().c_str());
       arm.target_m = i % 2 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
+      const auto heard = static_cast<std::ptrdiff_t>(arm.peer.statuses.size());
       arm.run(0.25);
+      const bool all = std::all_of(arm.peer.statuses.begin() + heard, arm.peer.statuses.end(),
+                                   [](const Status& status) { return status.mode == Status::TRACK; });
+      on_end = all ? on_end + 1 : 0;
     }
   }
 
-  /// Waits until so many logs are there and complete, and returns the newest.
-  std::string await_log(size_t count) {
-    const auto complete = [] {
-      const std::vector<std::string> files = logs();
-      return std::count_if(files.begin(), files.end(),
-                           [](const auto& file) { return fs::path(file).extension() == ".lcmlog"; });
-    };
-    for (int i = 0; i < 100 && complete() < static_cast<long>(count); ++i) arm.run(0.05);
-    check(complete() == static_cast<long>(count), "%ld logs: %s", complete(), controller.output().c_str());
-    return logs().back();
+  /// Runs on until it is so.
+  template <typename Condition>
+  bool await(Condition condition) {
+    for (int i = 0; i < 200 && !condition(); ++i) arm.run(0.05);
+    return condition();
   }
+
+  /// The arm falls silent until the controller has noticed.
+  void fail() {
+    arm.arm_speaks = false;
+    assert_true(arm.run_until(Status::FAULT, 2.0));
+  }
+
+  /// Waits until there is a newer log than so many of this reason, and returns the newest.
+  std::string await_log(const std::string& reason, size_t older = 0) {
+    check(await([&] { return logs(reason).size() > older; }), "%zu logs: %s", logs(reason).size(),
+          controller.output().c_str());
+    return logs(reason).back();
+  }
+
+  std::string ask_for_log() {
+    const size_t older = logs("request").size();
+    controller.signal(SIGUSR1);
+    return await_log("request", older);
+  }
+
+  void end() {
+    controller.signal(SIGTERM);
+    arm.run(0.5);
+    assert_int_equal(controller.wait(2.0), 0);
+  }
+
+  bool lacks_blackbox() const { return arm.status().limiting & Status::LIMITING_NO_BLACKBOX; }
 };
 
 std::string last_line(const std::string& text) {
@@ -85,54 +114,40 @@ std::string last_line(const std::string& text) {
 void a_fault_leaves_a_log_that_replays_bit_for_bit(void**) {
   for (const char* law : {"paper", "sidestep"}) {
     Scene scene(law);
-    scene.arm.arm_speaks = false;
-    assert_true(scene.arm.run_until(Status::FAULT, 2.0));
-    const std::string log = scene.await_log(1);
-    assert_true(log.find("-fault.lcmlog") != std::string::npos);
-    assert_true(agreed(log) > 100);
-    assert_true(!(scene.arm.status().limiting & Status::LIMITING_NO_BLACKBOX));
+    const size_t older = logs("fault").size();
+    scene.fail();
+    assert_true(agreed(scene.await_log("fault", older)) > 100);
+    assert_true(!scene.lacks_blackbox());
   }
 }
 
 /// Soon after one log another fault waits for company, but not beyond the end.
 void a_fault_just_before_the_end_has_its_log(void**) {
   Scene scene;
-  for (int fault = 0; fault < 2; ++fault) {
-    scene.arm.arm_speaks = false;
-    assert_true(scene.arm.run_until(Status::FAULT, 2.0));
-    scene.await_log(1);
-    scene.arm.arm_speaks = true;
-    assert_true(scene.arm.run_until(Status::TRACK, 3.0));
-  }
-  scene.controller.signal(SIGTERM);
-  scene.arm.run(0.5);
-  assert_int_equal(scene.controller.wait(2.0), 0);
-  assert_int_equal(logs().size(), 2);
-  for (const std::string& log : logs()) assert_true(agreed(log) > 100);
+  scene.fail();
+  scene.await_log("fault");
+  scene.arm.arm_speaks = true;
+  assert_true(scene.arm.run_until(Status::TRACK, 3.0));
+  scene.fail();
+  scene.end();
+  assert_true(logs("fault").size() >= 2);
+  assert_true(agreed(logs("fault").back()) > 100);
 }
 
 void a_signal_asks_for_a_log_and_the_arm_moves_on(void**) {
   Scene scene;
-  for (size_t count : {1, 2}) {
-    scene.controller.signal(SIGUSR1);
-    scene.await_log(count);
-  }
-  assert_int_equal(scene.arm.status().mode, Status::TRACK);
+  for (int i = 0; i < 2; ++i) scene.ask_for_log();
+  assert_true(scene.arm.run_until(Status::TRACK, 3.0));
+  assert_true(scene.arm.commands.complaint().empty());
   scene.controller.signal(SIGUSR1);
-  scene.controller.signal(SIGTERM);
-  scene.arm.run(0.5);
-  assert_int_equal(scene.controller.wait(2.0), 0);
-  assert_int_equal(logs().size(), 3);
-  for (const std::string& log : logs()) {
-    assert_true(log.find("-request.lcmlog") != std::string::npos);
-    assert_true(agreed(log) > 100);
-  }
+  scene.end();
+  assert_int_equal(logs("request").size(), 3);
+  for (const std::string& log : logs("request")) assert_true(agreed(log) > 100);
 }
 
 void another_configuration_is_found_out(void**) {
   Scene scene;
-  scene.controller.signal(SIGUSR1);
-  const std::string log = scene.await_log(1);
+  const std::string log = scene.ask_for_log();
   const std::string slower = test::scratch_file(
       "slower.yaml", test::replaced(test::text_of(scene.config), "velocity_radps: [2.0", "velocity_radps: [0.2"));
   const Replay said = replay(log, {"--config", slower});
@@ -144,8 +159,7 @@ void another_configuration_is_found_out(void**) {
 /// is taken for a whole log.
 void a_damaged_log_is_one_clear_line(void**) {
   Scene scene;
-  scene.controller.signal(SIGUSR1);
-  const std::string text = test::text_of(scene.await_log(1));
+  const std::string text = test::text_of(scene.ask_for_log());
   test::Random random(1);
   for (int i = 0; i < 60; ++i) {
     const auto at = static_cast<size_t>(random.uniform(0, i % 3 == 0 ? 400.0 : static_cast<double>(text.size())));
@@ -176,11 +190,8 @@ void files_that_are_no_logs_are_one_clear_line(void**) {
 
 void check_undisturbed(Scene& scene) {
   scene.controller.signal(SIGUSR1);
-  scene.run(1.0);
-  const Status& status = scene.arm.status();
-  check(status.limiting & Status::LIMITING_NO_BLACKBOX, "limiting %d: %s", status.limiting,
-        scene.controller.output().c_str());
-  assert_true(scene.arm.run_until(Status::TRACK, 1.0));
+  check(scene.await([&] { return scene.lacks_blackbox(); }), "%s", scene.controller.output().c_str());
+  scene.track();
   check(scene.arm.commands.complaint().empty(), "%s", scene.arm.commands.complaint().c_str());
   check(scene.controller.output().find("blackbox: ") != std::string::npos, "%s", scene.controller.output().c_str());
 }
@@ -189,19 +200,17 @@ void check_undisturbed(Scene& scene) {
 void a_full_disk_raises_a_flag_and_disturbs_nothing_else(void**) {
   Scene scene("sidestep", "trap '' XFSZ; ulimit -f 64; ");
   check_undisturbed(scene);
-  check(logs().empty(), "%s was left behind", logs().front().c_str());
+  assert_true(scene.await([] { return fs::is_empty(log_folder()); }));
 }
 
 void a_folder_that_cannot_be_made_raises_the_flag_until_it_can(void**) {
   Scene scene;
+  fs::remove_all(log_folder());
   test::scratch_file("logs", "in the way");
   check_undisturbed(scene);
   fs::remove(log_folder());
-  scene.controller.signal(SIGUSR1);
-  const std::string log = scene.await_log(1);
-  scene.arm.run(0.1);
-  assert_true(!(scene.arm.status().limiting & Status::LIMITING_NO_BLACKBOX));
-  agreed(log);
+  agreed(scene.ask_for_log());
+  assert_true(scene.await([&] { return !scene.lacks_blackbox(); }));
 }
 
 }  // namespace

@@ -37,11 +37,14 @@ struct Scene {
 
 void what_jumps_counts_in_its_old_place_too_for_a_while(void**) {
   Scene scene;
-  assert_int_equal(scene.send({ball(1, Vector3(0, 0, 1)), ball(2, Vector3(1, 0, 1))}), 0);
+  Obstacle wrong = ball(1, Vector3(0, 0, 1));  // of a sender whose velocities are no better than its places
+  wrong.velocity_mps = Vector3(100, 0, 0);
+  assert_int_equal(scene.send({wrong, ball(2, Vector3(1, 0, 1))}), 0);
   int periods = 0;
-  while (scene.send({ball(1, Vector3(0, 1, 1)), ball(2, Vector3(1, 0, 1))}) == 1 && ++periods < 1000) {
+  while (scene.send({ball(1, Vector3(0, 3, 1)), ball(2, Vector3(1, 0, 1))}) == 1 && ++periods < 1000) {
     assert_int_equal(scene.last().id, 1);
     check_near(scene.last().capsule.start, Vector3(0, 0, 1), 0);
+    check_near(scene.last().velocity_mps, Vector3::Zero(), 0);
   }
   check_near((periods + 1) * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
 }
