@@ -59,7 +59,7 @@ void check_always(const char* name, const Property& property, bool only_possible
   }
 }
 
-bool moves(Mode mode) {
+bool may_move(Mode mode) {
   return mode == Mode::kHold || mode == Mode::kTrack;
 }
 
@@ -73,26 +73,26 @@ void tracking_needs_everything_fresh(void**) {
 void what_stood_still_does_not_start_on_old_obstacles(void**) {
   check_always("start", [](const auto& last, const Facts& f, const auto& next) {
     const bool stood = last.mode == Mode::kWait || last.mode == Mode::kFault;
-    return !stood || f.obstacles_fresh || !moves(next.mode);
+    return !stood || f.obstacles_fresh || !may_move(next.mode);
   });
 }
 
 void a_wish_to_stop_never_leads_to_moving(void**) {
-  check_always("stop", [](const auto&, const Facts& f, const auto& next) { return !f.stop || !moves(next.mode); });
+  check_always("stop", [](const auto&, const Facts& f, const auto& next) { return !f.stop || !may_move(next.mode); });
 }
 
 void beside_another_controller_nothing_moves(void**) {
-  check_always("rival", [](const auto&, const Facts& f, const auto& next) { return !f.rival || !moves(next.mode); });
+  check_always("rival", [](const auto&, const Facts& f, const auto& next) { return !f.rival || !may_move(next.mode); });
 }
 
 void nothing_moves_without_a_fresh_arm_state(void**) {
   check_always(
-      "arm", [](const auto&, const Facts& f, const auto& next) { return f.arm_fresh || !moves(next.mode); }, true);
+      "arm", [](const auto&, const Facts& f, const auto& next) { return f.arm_fresh || !may_move(next.mode); }, true);
 }
 
 void nothing_starts_without_consistent_arm_states_and_known_obstacles(void**) {
   check_always("start", [](const Supervision& last, const Facts& f, const auto& next) {
-    const bool starts = (last.mode == Mode::kWait || last.mode == Mode::kFault) && moves(next.mode);
+    const bool starts = (last.mode == Mode::kWait || last.mode == Mode::kFault) && may_move(next.mode);
     return !starts || (f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && f.obstacles_known);
   });
 }
