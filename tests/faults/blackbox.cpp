@@ -34,12 +34,8 @@ std::string log_folder() {
   return test::scratch_folder() + "/logs";
 }
 
-/// Those that are complete and were written for this reason, the oldest first.
 std::vector<std::string> logs(const std::string& reason) {
-  std::vector<std::string> files;
-  for (const std::string& file : test::logs_in(log_folder()))
-    if (file.find("-" + reason + ".lcmlog") != std::string::npos) files.push_back(file);
-  return files;
+  return test::logs_in(log_folder(), reason);
 }
 
 /// A controller in real time that follows a target to and fro.

@@ -35,9 +35,10 @@ std::vector<std::string> controller(const std::string& config) {
   return {"build/controller", "--config", config, "--lcm-url", test::private_lcm_url()};
 }
 
-/// The only log of a controller that has ended, which is done with writing it; the number of cycles that agree.
+/// The log that was asked for of a controller that has ended, which is done with writing it; the number of cycles that
+/// agree.
 int agreed_in(const std::string& name) {
-  const std::vector<std::string> logs = logs_in(log_folder(name));
+  const std::vector<std::string> logs = logs_in(log_folder(name), "request");
   assert_int_equal(logs.size(), 1);
   return agreed(logs.front());
 }

@@ -38,11 +38,12 @@ int agreed(const std::string& log) {
   return std::atoi(said.output.c_str());
 }
 
-std::vector<std::string> logs_in(const std::string& folder) {
+std::vector<std::string> logs_in(const std::string& folder, const std::string& reason) {
   std::vector<std::string> files;
   if (std::filesystem::exists(folder))
     for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.path().extension() == ".lcmlog") files.push_back(entry.path().string());
+      if (entry.path().extension() == ".lcmlog" && entry.path().stem().string().find("-" + reason) != std::string::npos)
+        files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   return files;
 }
