@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/model/joint_axes.h"
+
 namespace sidestep {
 namespace {
 
@@ -12,22 +14,24 @@ constexpr double kShortestPass_s = 0.05;
 /// A way that meets the link's axis within this distance can be left to either side.
 constexpr double kTwoSides_m = 0.08;
 
-/// What the row lacks with the worst velocity in range; not positive: every velocity meets it.
-double worst_shortfall(const ShieldRow& row, const VelocityRange& range) {
-  return row.bound - row.row.cwiseProduct(range.lower_radps).cwiseMin(row.row.cwiseProduct(range.upper_radps)).sum();
+/// The least that a row can come to within a range of velocities.
+double least_mps(const JointVector& row, const VelocityRange& range) {
+  double sum_mps = 0.0;
+  for (Eigen::Index i = 0; i < row.size(); ++i)
+    sum_mps += std::min(row.coeff(i) * range.lower_radps.coeff(i), row.coeff(i) * range.upper_radps.coeff(i));
+  return sum_mps;
 }
 
+/// Adds a row; to a full list instead of the least pressing one, if it presses more.
 void add(const VelocityRange& range, const ShieldRow& row, ShieldRows& rows) {
-  const double shortfall = worst_shortfall(row, range);
-  if (shortfall <= 0.0) return;
   if (!rows.is_full()) {
     rows.add(row);
     return;
   }
-  const auto least = std::min_element(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
-    return worst_shortfall(a, range) < worst_shortfall(b, range);
-  });
-  if (worst_shortfall(*least, range) < shortfall) *least = row;
+  const auto pressing_mps = [&](const ShieldRow& r) { return r.bound - least_mps(r.row, range); };
+  const auto least = std::min_element(rows.begin(), rows.end(),
+                                      [&](const auto& a, const auto& b) { return pressing_mps(a) < pressing_mps(b); });
+  if (pressing_mps(*least) < pressing_mps(row)) *least = row;
 }
 
 /// Distance barrier of one tier: d' >= -gain (d - clearance).
@@ -35,16 +39,24 @@ double barrier(double gain_per_s, double distance_m, double clearance_m) {
   return -gain_per_s * (distance_m - clearance_m);
 }
 
+/// How fast the joints can brake together along a row.
+double braking_mps2(const JointVector& row, const JointLimits& limits) {
+  double sum_mps2 = 0.0;
+  for (Eigen::Index i = 0; i < row.size(); ++i)
+    sum_mps2 += std::abs(row.coeff(i)) * limits.acceleration_radps2.coeff(i);
+  return sum_mps2;
+}
+
 /// The hard barrier, which has to be kept with the accelerations that the joints have: the arm itself never goes nearer
-/// at a speed that it could not brake within the room left, one period of travel included. Along a row the joints brake
-/// with sum |row_i| a_i together; other rows need their share of it. closing_mps is the obstacle's part.
+/// at a speed that it could not brake within the room left, one period of travel included; other rows need their share
+/// of the braking. closing_mps is the obstacle's part.
 double hard_barrier(const ShieldSettings& settings, const Surroundings& now, const JointVector& row, double room_m,
                     double closing_mps) {
-  const double share = 0.5;
-  const double braking_mps2 = share * row.cwiseAbs().dot(now.arm.limits.acceleration_radps2);
   const double by_gain_mps = closing_mps - settings.hard_gain_per_s * room_m;
   if (room_m <= 0.0) return by_gain_mps;
-  return std::max(by_gain_mps, std::min(closing_mps, 0.0) - stopping_velocity(room_m, braking_mps2, now.period_s));
+  const double share = 0.5;
+  const double braked_mps = stopping_velocity(room_m, share * braking_mps2(row, now.arm.limits), now.period_s);
+  return std::max(by_gain_mps, std::min(closing_mps, 0.0) - braked_mps);
 }
 
 /// Works out the rows of one cycle.
@@ -52,20 +64,21 @@ class RowMaker {
  public:
   RowMaker(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
            const VelocityRange& range, RowSets& rows)
-      : settings_(settings), now_(now), lasting_(lasting), range_(range), rows_(rows) {}
+      : settings_(settings), now_(now), axes_(now.posture), lasting_(lasting), range_(range), rows_(rows) {}
 
   void add_self(int a, int b) {
     const LinkShape &first = now_.arm.shapes[a], &second = now_.arm.shapes[b];
     const Proximity pair = measure_pair(placed(now_.posture, first), placed(now_.posture, second));
-    const JointVector row = point_row(now_.posture, first.body, pair.on_arm, pair.normal) -
-                            point_row(now_.posture, second.body, pair.on_obstacle, pair.normal);
-    add_hard(row, pair.distance_m - settings_.self_clearance_m, 0.0);
+    const JointVector row =
+        axes_.row(first.body, pair.on_arm, pair.normal) - axes_.row(second.body, pair.on_obstacle, pair.normal);
+    add_hard(row, least_mps(row, lasting_), pair.distance_m - settings_.self_clearance_m, 0.0);
   }
 
   void add_distance(const NearPair& pair) {
     const double distance_m = pair.now.distance_m;
     if (distance_m > settings_.range_m) return;
-    const JointVector row = point_row(now_.posture, body_of(pair), pair.now.on_arm, pair.now.normal);
+    const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
+    const double least = least_mps(row, lasting_);
     const double approaching_mps = pair.now.normal.dot(pair.velocity_mps);
 
     // An obstacle whose way leads past the link need not be run away from: what counts is where it will be.
@@ -73,39 +86,42 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, distance_m - settings_.hard_clearance_m, threat_mps);
-    add_plan(row, approaching_mps + barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m),
-             Tier::kComfort);
+    add_hard(row, least, distance_m - settings_.hard_clearance_m, threat_mps);
+    const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
+    add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
   }
 
   void add_pass(const NearPair& pair) {
     const Approach& approach = pair.approach;
     if (approach.time_s <= 0.0) return;
     const Vector3 side = approach.head_on ? chosen_side(pair) : approach.normal;
-    const JointVector row = point_row(now_.posture, body_of(pair), approach.on_arm, side);
+    const JointVector row = axes_.row(body_of(pair), approach.on_arm, side);
+    const double least = least_mps(row, lasting_);
     const double missing_m = settings_.pass_clearance_m - approach.distance_m;
     if (missing_m <= 0.0) {
-      add_plan(row, barrier(settings_.pass_gain_per_s, approach.distance_m, settings_.pass_clearance_m), Tier::kPass);
+      const double pass_mps = barrier(settings_.pass_gain_per_s, approach.distance_m, settings_.pass_clearance_m);
+      add_plan(row, least, pass_mps, Tier::kPass);
       return;
     }
     // The arm needs a while to get moving; what is left of the time has to do.
     const double time_s = std::max(approach.time_s - settings_.pass_reaction_s, kShortestPass_s);
     const bool two_sides = approach.axis_distance_m < kTwoSides_m;
     const double other_m = two_sides ? missing_m + 2.0 * approach.axis_distance_m : 0.0;
-    add_plan(row, missing_m / time_s, Tier::kPass, other_m / time_s);
+    add_plan(row, least, missing_m / time_s, Tier::kPass, other_m / time_s);
   }
 
  private:
   int body_of(const NearPair& pair) const { return now_.arm.shapes[pair.now.shape].body; }
 
-  void add_hard(const JointVector& row, double room_m, double closing_mps) {
-    const double bound_mps = hard_barrier(settings_, now_, row, room_m, closing_mps);
-    const ShieldRow hard{row, std::min(bound_mps, kLargestDemand_mps), Tier::kHard};
-    add(lasting_, hard, rows_.plan);
-    add(range_, hard, rows_.step);
+  /// `least`: m/s, that the row can come to within lasting_. Rows that every velocity meets are left out.
+  void add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
+    const double bound_mps = std::min(hard_barrier(settings_, now_, row, room_m, closing_mps), kLargestDemand_mps);
+    if (bound_mps > least) add(lasting_, {row, bound_mps, Tier::kHard}, rows_.plan);
+    if (bound_mps > least_mps(row, range_)) add(range_, {row, bound_mps, Tier::kHard}, rows_.step);
   }
-  void add_plan(const JointVector& row, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
-    add(lasting_, {row, std::min(bound_mps, kLargestDemand_mps), tier, other_bound_mps}, rows_.plan);
+  void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
+    bound_mps = std::min(bound_mps, kLargestDemand_mps);
+    if (bound_mps > least) add(lasting_, {row, bound_mps, tier, other_bound_mps}, rows_.plan);
   }
 
   /// The side on which a link leaves the way of an obstacle that comes straight at it: the one it is already moving to.
@@ -119,6 +135,7 @@ class RowMaker {
 
   const ShieldSettings& settings_;
   const Surroundings& now_;
+  const JointAxes axes_;
   const VelocityRange& lasting_;
   const VelocityRange& range_;
   RowSets& rows_;

@@ -3,6 +3,14 @@
 #include <cmath>
 
 namespace sidestep {
+namespace {
+
+/// rotation * v by columns, which a compiler puts in line; it calls for Eigen's product of small matrices.
+inline Vector3 turned(const Matrix3& rotation, const Vector3& v) {
+  return rotation.col(0) * v[0] + rotation.col(1) * v[1] + rotation.col(2) * v[2];
+}
+
+}  // namespace
 
 Posture forward(const Arm& arm, const JointVector& q_rad) {
   Posture posture;
@@ -12,12 +20,12 @@ Posture forward(const Arm& arm, const JointVector& q_rad) {
   for (int i = 1; i <= arm.joints; ++i) {
     const Eigen::Isometry3d& placement = arm.joint_placement[i];
     const Matrix3& parent = posture.rotation[i - 1];
-    const Matrix3 before = parent * placement.linear();
+    const Vector3 x = turned(parent, placement.linear().col(0)), y = turned(parent, placement.linear().col(1));
     const double c = std::cos(q_rad[i - 1]), s = std::sin(q_rad[i - 1]);
-    posture.rotation[i].col(0) = c * before.col(0) + s * before.col(1);
-    posture.rotation[i].col(1) = c * before.col(1) - s * before.col(0);
-    posture.rotation[i].col(2) = before.col(2);
-    posture.origin[i] = posture.origin[i - 1] + parent * placement.translation();
+    posture.rotation[i].col(0) = c * x + s * y;
+    posture.rotation[i].col(1) = c * y - s * x;
+    posture.rotation[i].col(2) = turned(parent, placement.linear().col(2));
+    posture.origin[i] = posture.origin[i - 1] + turned(parent, placement.translation());
   }
   const Matrix3& last = posture.rotation[arm.joints];
   posture.tool_rotation = last * arm.last_body_from_tool.linear();
@@ -29,20 +37,13 @@ Capsule placed(const Posture& posture, const LinkShape& shape) {
   const Matrix3& rotation = posture.rotation[shape.body];
   const Vector3& origin = posture.origin[shape.body];
   const Capsule& capsule = shape.capsule_body;
-  return {origin + rotation * capsule.start, origin + rotation * capsule.end, capsule.radius_m};
+  return {origin + turned(rotation, capsule.start), origin + turned(rotation, capsule.end), capsule.radius_m};
 }
 
 PointJacobian point_jacobian(const Posture& posture, int body, const Vector3& p_base) {
   PointJacobian jacobian = PointJacobian::Zero(3, posture.joints);
   for (int i = 1; i <= body; ++i) jacobian.col(i - 1) = posture.rotation[i].col(2).cross(p_base - posture.origin[i]);
   return jacobian;
-}
-
-JointVector point_row(const Posture& posture, int body, const Vector3& p_base, const Vector3& direction) {
-  JointVector row = JointVector::Zero(posture.joints);
-  for (int i = 1; i <= body; ++i)
-    row[i - 1] = posture.rotation[i].col(2).dot((p_base - posture.origin[i]).cross(direction));
-  return row;
 }
 
 TaskJacobian tool_jacobian(const Posture& posture, int rows) {

@@ -25,9 +25,6 @@ Capsule placed(const Posture& posture, const LinkShape& shape);
 /// 0.
 PointJacobian point_jacobian(const Posture& posture, int body, const Vector3& p_base);
 
-/// The same along a unit direction alone: point_jacobian^T direction, n x 1.
-JointVector point_row(const Posture& posture, int body, const Vector3& p_base, const Vector3& direction);
-
 /// Velocity of the tool over the joint velocities: rows = 3 (linear) or 6 (linear, then angular); rows x n.
 TaskJacobian tool_jacobian(const Posture& posture, int rows);
 
