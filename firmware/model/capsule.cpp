@@ -10,14 +10,16 @@ NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b) {
   const Vector3 v = b.end - b.start;
   const Vector3 w = a.start - b.start;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double per_uu = uu > 0.0 ? 1.0 / uu : 0.0, per_vv = vv > 0.0 ? 1.0 / vv : 0.0;
 
-  // Nearest on the infinite lines, clamped to a; then the nearest on b to that, clamped; then once more on a.
+  // Nearest on the infinite lines, clamped to a; then the nearest on b to that, clamped; then once more on a and on b.
   const double determinant = uu * vv - uv * uv;
   const bool parallel = determinant <= 1e-12 * uu * vv;
-  const double s = parallel ? 0.0 : std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);
-  const Vector3 on_b = nearest_on_segment(b.start, b.end, a.start + s * u);
-  const Vector3 on_a = nearest_on_segment(a.start, a.end, on_b);
-  return {on_a, nearest_on_segment(b.start, b.end, on_a)};
+  double on_a = parallel ? 0.0 : std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);
+  double on_b = std::clamp((uv * on_a + vw) * per_vv, 0.0, 1.0);
+  on_a = std::clamp((uv * on_b - uw) * per_uu, 0.0, 1.0);
+  on_b = std::clamp((uv * on_a + vw) * per_vv, 0.0, 1.0);
+  return {a.start + on_a * u, b.start + on_b * v};
 }
 
 Capsule capsule_around_box(const Vector3& edges_m) {

@@ -71,31 +71,40 @@ class Gatherer {
     if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
 
     if (is_sphere)
-      gather_sphere(centre, obstacle.velocity_mps, index, radii_m, travel_m);
+      gather_sphere({centre, centre, reported.radius_m + growth_m}, obstacle.velocity_mps, index, travel_m);
     else
-      gather_long(index, radii_m, core_m, travel_m);
+      gather_long(view_.present(index), index, radii_m, core_m, travel_m);
   }
 
  private:
   /// The distance to a link is a convex function of the place, so that it falls no faster on the way than at first.
-  void gather_sphere(const Vector3& centre, const Vector3& velocity_mps, int index, double radii_m, double travel_m) {
+  void gather_sphere(const Capsule& sphere, const Vector3& velocity_mps, int index, double travel_m) {
+    const Vector3& centre = sphere.start;
+    const double radii_m = links_.radius_m + sphere.radius_m;
+    double reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
     for (int s = 0; s < links_.shapes.size(); ++s) {
-      const Vector3 gap = links_.shapes[s].gap_to(centre);
+      const Link& link = links_.shapes[s];
+      const Vector3 gap = link.gap_to(centre);
       const double distance2_m2 = gap.squaredNorm();
-      if (distance2_m2 > square(reach_m(radii_m, 0.0, travel_m))) continue;
+      if (distance2_m2 > reach2_m2) continue;
       const double distance_m = std::sqrt(distance2_m2);
       const double closing_m = std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m);
       if (distance_m > reach_m(radii_m, 0.0, std::max(0.0, closing_m))) continue;
-      look_at(s, view_.present(index), index, travel_m);
+      const Proximity now = measure_pair(link.capsule, sphere);
+      look_at(s, index, now, velocity_mps, travel_m,
+              [&] { return predict_approach(link.capsule, sphere.radius_m, centre, velocity_mps, horizon_s_); });
+      reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
     }
   }
 
-  void gather_long(int index, double radii_m, double core_m, double travel_m) {
-    const Obstacle present = view_.present(index);
+  void gather_long(const Obstacle& present, int index, double radii_m, double core_m, double travel_m) {
     for (int s = 0; s < links_.shapes.size(); ++s) {
-      const NearestPoints points = nearest_on_axes(links_.shapes[s].capsule, present.capsule);
-      const double reach2_m2 = square(reach_m(radii_m, core_m, travel_m));
-      if ((points.a - points.b).squaredNorm() <= reach2_m2) look_at(s, present, index, travel_m);
+      const Capsule& link = links_.shapes[s].capsule;
+      const NearestPoints points = nearest_on_axes(link, present.capsule);
+      if ((points.a - points.b).squaredNorm() > square(reach_m(radii_m, core_m, travel_m))) continue;
+      const Proximity now = measure_pair(link, present);
+      look_at(s, index, now, velocity_at(present, now.on_obstacle), travel_m,
+              [&] { return predict_approach(link, present, now, horizon_s_); });
     }
   }
 
@@ -110,16 +119,18 @@ class Gatherer {
     return {half_m, obstacle.is_box() ? radius_m : 0.0, obstacle.angular_velocity_radps.norm() * (half_m + radius_m)};
   }
 
-  void look_at(int shape, const Obstacle& obstacle, int index, double travel_m) {
-    const Capsule& link = links_.shapes[shape].capsule;
-    Proximity now = measure_pair(link, obstacle);
-    now.shape = shape;
-    now.obstacle = index;
-    if (now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = now;
+  /// velocity_mps: of the obstacle's nearest point. predict() says the approach of the pair.
+  template <typename Predict>
+  void look_at(int shape, int obstacle, const Proximity& proximity, const Vector3& velocity_mps, double travel_m,
+               const Predict& predict) {
+    NearPair pair{proximity, {}, velocity_mps};
+    pair.now.shape = shape;
+    pair.now.obstacle = obstacle;
+    if (pair.now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = pair.now;
     if (arm_.shapes[shape].body == 0) return;
-    if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
-    if (now.distance_m - travel_m > limit_m_) return;
-    const NearPair pair{now, predict_approach(link, obstacle, now, horizon_s_), velocity_at(obstacle, now.on_obstacle)};
+    if (pair.now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = pair.now;
+    if (pair.now.distance_m - travel_m > limit_m_) return;
+    pair.approach = predict();
     if (pressing_m(pair) < limit_m_) keep(pair);
   }
 

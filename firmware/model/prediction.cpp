@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/model/bounded_list.h"
 #include "firmware/model/proximity.h"
 
 namespace sidestep {
@@ -19,20 +20,23 @@ struct Ball {
 
 double clearance_after(const Arm& arm, const Posture& posture, const Obstacle* obstacles, int count, double after_s,
                        double enough_m) {
-  std::array<Capsule, kMaxShapes> links;
-  int moving = 0;
-  for (const LinkShape& shape : arm.shapes)
-    if (shape.body > 0) links[moving++] = placed(posture, shape);
+  BoundedList<Capsule, kMaxShapes> links;
+  BoundedList<Ball, kMaxShapes> around;
+  for (const LinkShape& shape : arm.shapes) {
+    if (shape.body == 0) continue;
+    links.add(placed(posture, shape));
+    around.add(Ball(links[links.size() - 1]));
+  }
 
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
-    const Obstacle then = moved(obstacles[o], after_s);
-    const Ball there(then.capsule);
-    for (int l = 0; l < moving; ++l) {
-      const Ball link(links[l]);
-      const double near_m = link.radius_m + there.radius_m + least_m;
-      if (near_m <= 0.0 || (link.centre - there.centre).squaredNorm() >= near_m * near_m) continue;
-      least_m = std::min(least_m, surface_distance_m(links[l], then, least_m));
+    const Obstacle& obstacle = obstacles[o];
+    const Vector3 centre = obstacle.capsule.centre() + obstacle.velocity_mps * after_s;
+    const double extent_m = obstacle.capsule.extent_m();
+    for (int l = 0; l < links.size(); ++l) {
+      const double near_m = around[l].radius_m + extent_m + least_m;
+      if (near_m <= 0.0 || (around[l].centre - centre).squaredNorm() >= near_m * near_m) continue;
+      least_m = std::min(least_m, surface_distance_m(links[l], moved(obstacle, after_s), least_m));
     }
   }
   return least_m;

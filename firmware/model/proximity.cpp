@@ -3,30 +3,6 @@
 namespace sidestep {
 namespace {
 
-/// The closest approach of a point of an obstacle with this radius.
-Approach approach_of(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
-                     double horizon_s) {
-  const Vector3 path = velocity_mps * horizon_s;
-  const NearestPoints points = nearest_on_axes(link, {point, point + path, 0.0});
-  Approach approach;
-  approach.on_arm = points.a;
-  const double length2 = path.squaredNorm();
-  approach.time_s = length2 > 0.0 ? horizon_s * path.dot(points.b - point) / length2 : 0.0;
-  const Vector3 gap = points.a - points.b;
-  const double axis_distance_m = approach.axis_distance_m = gap.norm();
-  approach.distance_m = axis_distance_m - link.radius_m - radius_m;
-  // A path through the axis itself can be left to either side; within this distance the side is not yet decided.
-  const double undecided_m = 0.005;
-  approach.head_on = axis_distance_m < undecided_m;
-  if (!approach.head_on) {
-    approach.normal = gap / axis_distance_m;
-    return approach;
-  }
-  const Vector3 across = path.cross(link.end - link.start);
-  approach.normal = across.norm() > 1e-9 ? across.normalized() : path.unitOrthogonal();
-  return approach;
-}
-
 /// A box on its way past a link that stays where it is. Their distance is a convex function of the time, so that its
 /// tangents bound it from below.
 class BoxOnItsWay {
@@ -115,8 +91,31 @@ double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double 
 
 Approach predict_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double horizon_s) {
   if (obstacle.is_box()) return BoxOnItsWay(link, obstacle, now).closest(now, horizon_s);
-  return approach_of(link, obstacle.capsule.radius_m, now.on_obstacle, velocity_at(obstacle, now.on_obstacle),
-                     horizon_s);
+  return predict_approach(link, obstacle.capsule.radius_m, now.on_obstacle, velocity_at(obstacle, now.on_obstacle),
+                          horizon_s);
+}
+
+Approach predict_approach(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
+                          double horizon_s) {
+  const Vector3 path = velocity_mps * horizon_s;
+  const NearestPoints points = nearest_on_axes(link, {point, point + path, 0.0});
+  Approach approach;
+  approach.on_arm = points.a;
+  const double length2 = path.squaredNorm();
+  approach.time_s = length2 > 0.0 ? horizon_s * path.dot(points.b - point) / length2 : 0.0;
+  const Vector3 gap = points.a - points.b;
+  const double axis_distance_m = approach.axis_distance_m = gap.norm();
+  approach.distance_m = axis_distance_m - link.radius_m - radius_m;
+  // A path through the axis itself can be left to either side; within this distance the side is not yet decided.
+  const double undecided_m = 0.005;
+  approach.head_on = axis_distance_m < undecided_m;
+  if (!approach.head_on) {
+    approach.normal = gap / axis_distance_m;
+    return approach;
+  }
+  const Vector3 across = path.cross(link.end - link.start);
+  approach.normal = across.norm() > 1e-9 ? across.normalized() : path.unitOrthogonal();
+  return approach;
 }
 
 }  // namespace sidestep

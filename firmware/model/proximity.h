@@ -40,4 +40,8 @@ double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double 
 /// box.
 Approach predict_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double horizon_s);
 
+/// The same of a ball around a point.
+Approach predict_approach(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
+                          double horizon_s);
+
 }  // namespace sidestep
