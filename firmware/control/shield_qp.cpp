@@ -15,6 +15,9 @@ constexpr int kMostRounds = 3;
 constexpr double kHardRelief = 1e-3;
 constexpr double kPassRelief = 3e-2;
 
+/// A hard row that is given up by less than this is none that the others could hide behind.
+constexpr double kNegligible_mps = 1e-4;
+
 double relief(const Nearness& near, Tier tier) {
   if (tier == Tier::kHard) return kHardRelief;
   if (tier == Tier::kPass) return kPassRelief;
@@ -34,15 +37,15 @@ struct Problem {
   using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
   Hessian hessian = Hessian::Identity();
-  Hessian inverse_root = Hessian::Identity();  ///< R with R R' = hessian^-1, upper triangular
+  Hessian inverse_root = Hessian::Identity();  ///< R with R R' = hessian^-1
   Unknowns gradient = Unknowns::Zero();
   Eigen::Matrix<double, kConditions, kUnknowns> conditions = Eigen::Matrix<double, kConditions, kUnknowns>::Zero();
   Eigen::Matrix<double, kConditions, 1> offsets = Eigen::Matrix<double, kConditions, 1>::Ones();
 
   Problem(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
     const int n = static_cast<int>(near.wish_radps.size());
-    if (near.tool_weight > 0.0) weigh_tool(near);
-    gradient.head(n) = -hessian.topLeftCorner(n, n) * near.wish_radps;
+    if (near.tool_weight > 0.0) near.tool_jacobian.rows() == 6 ? weigh_tool<6>(near) : weigh_tool<3>(near);
+    gradient.head(n) = -hessian.topLeftCorner(n, n).lazyProduct(near.wish_radps);
     for (int i = 0; i < n; ++i) {
       conditions(2 * i, i) = 1.0;
       offsets[2 * i] = -range.lower_radps[i];
@@ -61,14 +64,23 @@ struct Problem {
     }
   }
 
-  /// The slacks stand apart, so that only the joints' corner is not the identity.
+  /// The slacks stand apart, so that only the joints' corner is not the identity: I + w J^T J. The root of its inverse
+  /// is I - (L^-1 J)^T (L + N)^-1 J with N = I / sqrt(w) and L L^T = J J^T + N N (Andrews' square root of Kalman's
+  /// update).
+  template <int rows>
   void weigh_tool(const Nearness& near) {
-    const Eigen::Index n = near.wish_radps.size();
-    hessian.topLeftCorner(n, n) += near.tool_weight * near.tool_jacobian.transpose() * near.tool_jacobian;
-    using Corner = Eigen::Matrix<double, joint_capacity, joint_capacity>;
-    const Eigen::LLT<Corner> cholesky(hessian.template topLeftCorner<joint_capacity, joint_capacity>());
-    for (int i = 0; i < joint_capacity; ++i)
-      inverse_root.col(i).template head<joint_capacity>() = cholesky.matrixU().solve(Corner::Identity().col(i));
+    using Tall = Eigen::Matrix<double, rows, joint_capacity>;
+    using Square = Eigen::Matrix<double, rows, rows>;
+    Tall jacobian = Tall::Zero();
+    jacobian.leftCols(near.tool_jacobian.cols()) = near.tool_jacobian;
+    const Square noise = Square::Identity() / std::sqrt(near.tool_weight);
+    const Square gram = jacobian.lazyProduct(jacobian.transpose()) + noise * noise;
+    const Square root = gram.llt().matrixL();
+    const Square more = root + noise;
+    const Tall a = root.inverse().lazyProduct(jacobian), b = more.inverse().lazyProduct(jacobian);
+    hessian.template topLeftCorner<joint_capacity, joint_capacity>() +=
+        near.tool_weight * jacobian.transpose().lazyProduct(jacobian);
+    inverse_root.template topLeftCorner<joint_capacity, joint_capacity>() -= a.transpose().lazyProduct(b);
   }
 
   bool solve(Unknowns& x) const {
@@ -108,8 +120,7 @@ QpSolution solve_sized(const ShieldRows& rows, const VelocityRange& range, const
     solution.cost = wish_cost + 0.5 * x.dot(problem.hessian * x) + problem.gradient.dot(x);
     const double loss_mps = x[joint_capacity] * kHardRelief;
     solution.loss_mps = std::max(solution.loss_mps, loss_mps);
-    const double negligible_mps = 1e-4;
-    if (loss_mps < negligible_mps) break;
+    if (loss_mps < kNegligible_mps) break;
     problem.settle_worst(x, loss_mps);
   }
   return solution;
@@ -123,18 +134,71 @@ QpSolution solve_for(const ShieldRows& rows, const VelocityRange& range, const N
   return solve_sized<joint_capacity, kMaxRows>(rows, range, near);
 }
 
-/// The wish itself, where nothing stands against it: most cycles need no QP.
-bool is_met(const ShieldRows& rows, const VelocityRange& range, const JointVector& wish_radps) {
-  if ((wish_radps.array() < range.lower_radps.array()).any() || (wish_radps.array() > range.upper_radps.array()).any())
-    return false;
-  return std::none_of(rows.begin(), rows.end(),
-                      [&](const ShieldRow& row) { return row.row.dot(wish_radps) < row.bound; });
+bool leaves(const VelocityRange& range, const JointVector& velocity_radps) {
+  return (velocity_radps.array() < range.lower_radps.array()).any() ||
+         (velocity_radps.array() > range.upper_radps.array()).any();
+}
+
+/// What a row lacks, m/s.
+double lack_mps(const ShieldRow& row, const JointVector& velocity_radps) {
+  return row.bound - row.row.dot(velocity_radps);
+}
+
+/// hessian^-1 row, by the inverse of the small matrix J J^T + 1 / w.
+template <int rows>
+JointVector eased(const Nearness& near, const JointVector& row) {
+  const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = near.tool_jacobian;
+  Eigen::Matrix<double, rows, rows> gram = jacobian.lazyProduct(jacobian.transpose());
+  gram.diagonal().array() += 1.0 / near.tool_weight;
+  const Eigen::Matrix<double, rows, 1> tool = gram.inverse() * jacobian.lazyProduct(row);
+  return row - jacobian.transpose().lazyProduct(tool);
+}
+
+JointVector eased(const Nearness& near, const JointVector& row) {
+  if (near.tool_weight == 0.0) return row;
+  return near.tool_jacobian.rows() == 6 ? eased<6>(near, row) : eased<3>(near, row);
+}
+
+/// Moves the wish just as far as one row asks that it does not meet. False where that is not the solution: another row
+/// or the range is against it, or a hard row has to be given up.
+bool meet_one(const ShieldRows& rows, const VelocityRange& range, const Nearness& near, const ShieldRow& one,
+              QpSolution& solution) {
+  const JointVector along = eased(near, one.row);
+  const double give_mps = relief(near, one.tier);
+  const double lack = lack_mps(one, near.wish_radps);
+  const double pull = lack / (one.row.dot(along) + give_mps * give_mps);
+  const double given_up_mps = pull * give_mps * give_mps;
+  if (one.tier == Tier::kHard && given_up_mps > kNegligible_mps) return false;
+  const JointVector velocity_radps = near.wish_radps + pull * along;
+  const bool met = !leaves(range, velocity_radps) && std::all_of(rows.begin(), rows.end(), [&](const ShieldRow& row) {
+    const double rounding_mps = 1e-12;
+    return lack_mps(row, velocity_radps) <= (row.tier == one.tier ? given_up_mps : 0.0) + rounding_mps;
+  });
+  if (!met) return false;
+  solution = {velocity_radps, 0.5 * pull * lack, one.tier == Tier::kHard ? given_up_mps : 0.0};
+  return true;
+}
+
+/// Most cycles need no QP: the wish itself will do, or what one row makes of it.
+bool solve_simple(const ShieldRows& rows, const VelocityRange& range, const Nearness& near, QpSolution& solution) {
+  if (leaves(range, near.wish_radps)) return false;
+  const ShieldRow* worst = nullptr;
+  double most_mps = 0.0;
+  for (const ShieldRow& row : rows) {
+    const double lack = lack_mps(row, near.wish_radps);
+    if (!(lack > most_mps)) continue;
+    most_mps = lack;
+    worst = &row;
+  }
+  if (worst) return meet_one(rows, range, near, *worst, solution);
+  solution = {near.wish_radps};
+  return true;
 }
 
 }  // namespace
 
 QpSolution solve(const ShieldRows& rows, const VelocityRange& range, const Nearness& nearness) {
-  if (is_met(rows, range, nearness.wish_radps)) return {nearness.wish_radps};
+  if (QpSolution simple; solve_simple(rows, range, nearness, simple)) return simple;
   constexpr int kCommonJoints = 7;
   return nearness.wish_radps.size() <= kCommonJoints ? solve_for<kCommonJoints>(rows, range, nearness)
                                                      : solve_for<kMaxJoints>(rows, range, nearness);
