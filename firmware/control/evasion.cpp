@@ -10,6 +10,7 @@ namespace {
 constexpr int kMostWays = 4;         // 2^4 combinations of sides
 constexpr int kMostObstacles = 16;   // looked at in a rollout
 constexpr double kStep_s = 0.05;     // of a rollout
+constexpr int kMostSteps = 256;      // of a rollout
 constexpr double kAfter_s = 0.2;     // looked at beyond the last approach
 constexpr double kMissWeight = 1e4;  // cost of a metre of missing clearance
 
@@ -34,22 +35,26 @@ Threats find_threats(const Clearance& clearance, const ObstacleView& view) {
   return threats;
 }
 
-/// The least clearance, of most_m, on the way when the arm takes up a joint velocity as fast as it can and keeps it.
-/// Below enough_m the rest of the way is not looked at.
-double least_clearance(const Surroundings& now, const Threats& threats, const JointVector& velocity_radps,
-                       double enough_m, double most_m) {
+/// The joint positions on the way, kStep_s apart, when the arm takes up a joint velocity as fast as it can and keeps
+/// it.
+using Way = BoundedList<JointVector, kMostSteps>;
+
+Way way_of(const Surroundings& now, const JointVector& velocity_radps, double duration_s) {
+  Way way;
+  while (!way.is_full() && (way.size() + 1) * kStep_s <= duration_s) way.add(now.position_rad);
   const JointLimits& limits = now.arm.limits;
-  const JointVector change = limits.acceleration_radps2 * kStep_s;
-  JointVector q_rad = now.position_rad, qd_radps = now.last_velocity_radps;
-  double least_m = most_m;
-  for (double time_s = kStep_s; time_s <= threats.last_s + kAfter_s && least_m >= enough_m; time_s += kStep_s) {
-    const JointVector next = qd_radps + (velocity_radps - qd_radps).cwiseMax(-change).cwiseMin(change);
-    q_rad = (q_rad + 0.5 * kStep_s * (qd_radps + next)).cwiseMax(limits.lower_rad).cwiseMin(limits.upper_rad);
-    qd_radps = next;
-    least_m = clearance_after(now.arm, forward(now.arm, q_rad), threats.obstacles.begin(), threats.obstacles.size(),
-                              time_s, least_m);
+  for (int joint = 0; joint < now.arm.joints; ++joint) {
+    const double change = limits.acceleration_radps2[joint] * kStep_s, goal = velocity_radps[joint];
+    const double lower = limits.lower_rad[joint], upper = limits.upper_rad[joint];
+    double q = now.position_rad[joint], qd = now.last_velocity_radps[joint];
+    for (JointVector& position_rad : way) {
+      const double next = qd + std::clamp(goal - qd, -change, change);
+      q = std::clamp(q + 0.5 * kStep_s * (qd + next), lower, upper);
+      qd = next;
+      position_rad.coeffRef(joint) = q;
+    }
   }
-  return least_m;
+  return way;
 }
 
 /// What a way out costs: how far it is from the wish, and what it will miss of the hard clearance.
@@ -59,7 +64,7 @@ class Judge {
       : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance, now.obstacles)) {}
 
   /// Exact below too_much; else anything from there on, which takes less time to find out.
-  double cost(const JointVector& velocity_radps, double too_much) const {
+  double cost(const JointVector& velocity_radps, double too_much) {
     const JointVector off = velocity_radps - nearness_.wish_radps;
     const double tool = (nearness_.tool_jacobian * off).squaredNorm();
     const double distance = 0.5 * (off.squaredNorm() + nearness_.tool_weight * tool);
@@ -69,10 +74,19 @@ class Judge {
     return distance + kMissWeight * missing_m(velocity_radps, most_m);
   }
 
-  /// Exact up to most_m.
-  double missing_m(const JointVector& velocity_radps, double most_m) const {
-    const double clearance_m = settings_.hard_clearance_m;
-    return clearance_m - least_clearance(now_, threats_, velocity_radps, clearance_m - most_m, clearance_m);
+  /// Exact up to most_m. Looks first where the way before was worst: there the next one most likely fails as well.
+  double missing_m(const JointVector& velocity_radps, double most_m) {
+    const Way way = way_of(now_, velocity_radps, threats_.last_s + kAfter_s);
+    const double enough_m = settings_.hard_clearance_m - most_m;
+    double least_m = settings_.hard_clearance_m;
+    for (int i = 0, step = worst_step_; i < way.size() && least_m >= enough_m; ++i, step = (step + 1) % way.size()) {
+      const double after_s = (step + 1) * kStep_s;
+      const double there_m = clearance_after(now_.arm, forward(now_.arm, way[step]), threats_.obstacles.begin(),
+                                             threats_.obstacles.size(), after_s, least_m);
+      if (there_m < least_m) worst_step_ = step;
+      least_m = there_m;
+    }
+    return settings_.hard_clearance_m - least_m;
   }
 
  private:
@@ -80,6 +94,7 @@ class Judge {
   const Surroundings& now_;
   const Nearness& nearness_;
   const Threats threats_;
+  int worst_step_ = 0;
 };
 
 /// The ways that links may leave on either side: indices of rows, the first kMostWays.
@@ -117,16 +132,20 @@ bool is_threatened(const ShieldRows& rows) {
 Evasion evade(const ShieldSettings& settings, const Surroundings& now, const ShieldRows& rows,
               const VelocityRange& range, const Nearness& nearness, const JointVector& plan_radps) {
   if (!is_threatened(rows)) return {plan_radps, false};
-  const Judge judge(settings, now, nearness);
+  Judge judge(settings, now, nearness);
   if (judge.missing_m(plan_radps, 0.0) <= 0.0) return {plan_radps, false};
   JointVector best = plan_radps;
-  double best_cost = judge.cost(plan_radps, std::numeric_limits<double>::infinity());
+  double best_cost = std::numeric_limits<double>::infinity();
   const auto consider = [&](const JointVector& candidate, double advantage) {
     const double cost = advantage * judge.cost(candidate, best_cost / advantage);
     if (cost >= best_cost) return;
     best = candidate;
     best_cost = cost;
   };
+  // What was good the cycle before mostly still is; known first, it spares looking at the others to their end.
+  if (now.evasion_radps.size() > 0)
+    consider(now.evasion_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps), kClearlyBetter);
+  consider(plan_radps, 1.0);
   const Ways ways = find_ways(rows);
   for (int sides = 1; sides < 1 << ways.count; ++sides)
     consider(solve(turn(rows, ways, sides), range, nearness).velocity_radps, 1.0);
@@ -137,8 +156,6 @@ Evasion evade(const ShieldSettings& settings, const Surroundings& now, const Shi
       consider(single, 1.0);
     }
   }
-  if (now.evasion_radps.size() > 0)
-    consider(now.evasion_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps), kClearlyBetter);
   return {best, true};
 }
 
