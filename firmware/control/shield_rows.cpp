@@ -64,13 +64,14 @@ class RowMaker {
  public:
   RowMaker(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
            const VelocityRange& range, RowSets& rows)
-      : settings_(settings), now_(now), axes_(now.posture), lasting_(lasting), range_(range), rows_(rows) {}
+      : settings_(settings), now_(now), axes_(now.posture), lasting_(lasting), range_(range), rows_(rows) {
+    for (const LinkShape& shape : now.arm.shapes) links_.add(placed(now.posture, shape));
+  }
 
   void add_self(int a, int b) {
-    const LinkShape &first = now_.arm.shapes[a], &second = now_.arm.shapes[b];
-    const Proximity pair = measure_pair(placed(now_.posture, first), placed(now_.posture, second));
-    const JointVector row =
-        axes_.row(first.body, pair.on_arm, pair.normal) - axes_.row(second.body, pair.on_obstacle, pair.normal);
+    const Proximity pair = measure_pair(links_[a], links_[b]);
+    const JointVector row = axes_.row(now_.arm.shapes[a].body, pair.on_arm, pair.normal) -
+                            axes_.row(now_.arm.shapes[b].body, pair.on_obstacle, pair.normal);
     add_hard(row, least_mps(row, lasting_), pair.distance_m - settings_.self_clearance_m, 0.0);
   }
 
@@ -136,6 +137,7 @@ class RowMaker {
   const ShieldSettings& settings_;
   const Surroundings& now_;
   const JointAxes axes_;
+  BoundedList<Capsule, kMaxShapes> links_;
   const VelocityRange& lasting_;
   const VelocityRange& range_;
   RowSets& rows_;

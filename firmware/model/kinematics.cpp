@@ -5,7 +5,7 @@
 namespace sidestep {
 namespace {
 
-/// rotation * v by columns, which a compiler puts in line; it calls for Eigen's product of small matrices.
+/// rotation * v by columns; Eigen's product of small matrices makes calls.
 inline Vector3 turned(const Matrix3& rotation, const Vector3& v) {
   return rotation.col(0) * v[0] + rotation.col(1) * v[1] + rotation.col(2) * v[2];
 }
