@@ -1,16 +1,19 @@
 #pragma once
 
-#include "firmware/model/clearance.h"
+#include <vector>
+
+#include "firmware/control/cycle.h"
 
 namespace sidestep::bench {
 
-/// The least that a controller among obstacles has to compute: forward kinematics, the distance of every moving link to
-/// every sphere, the tool's Jacobian and its damped least-squares inverse. No prediction, no shield, no limits.
-struct Bare {
+/// The least that a controller of a whole arm among obstacles has to compute: forward kinematics; the distances of the
+/// moving links to every sphere and to one another, with the nearest points and the normal, by the same function as the
+/// controller; the tool's Jacobian and its damped least-squares inverse. No prediction, no rows, no limits, no shield.
+struct BareCycle {
+  std::vector<Proximity> pairs;  ///< room for them is made in the first call
   JointVector velocity_radps;
-  double nearest_m;
-};
 
-Bare bare_cycle(const Arm& arm, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m);
+  void run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m);
+};
 
 }  // namespace sidestep::bench
