@@ -16,4 +16,12 @@ struct BareCycle {
   void run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m);
 };
 
+/// The same with the least distance to the spheres alone: nothing from which one could keep clear.
+struct BarestCycle {
+  double nearest_m;
+  JointVector velocity_radps;
+
+  void run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m);
+};
+
 }  // namespace sidestep::bench

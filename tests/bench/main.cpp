@@ -116,7 +116,8 @@ void lead_target(double now_s, Target& target) {
 }
 
 struct Measured {
-  Values bare_us, step_us, times_bare;  ///< the last within one cycle, where the machine is equally fast for both
+  Values barest_us, bare_us, step_us;
+  Values times_barest, times_bare;  ///< within one cycle, where the machine is equally fast for both
   StageTimes stages;
 };
 
@@ -126,18 +127,25 @@ Measured measure(const Scene& scene, const char* law) {
   loop.target_speaks = true;
   scatter(scene, loop);
   Measured measured;
+  bench::BarestCycle barest;
   bench::BareCycle bare;
   for (int cycle = -kStartCycles; cycle < scene.cycles; ++cycle) {
     bounce(scene.box, *loop.obstacles);
     lead_target(loop.now_s(), loop.target);
     const Inputs inputs = loop.receive();
     Result result;
-    const double bare_us = least_us(
-        [&] { bare.run(loop.model, loop.arm.position_rad, *inputs.obstacles.message, loop.target.position_m); });
+    const auto time_us = [&](auto& computation) {
+      return least_us([&] {
+        computation.run(loop.model, loop.arm.position_rad, *inputs.obstacles.message, loop.target.position_m);
+      });
+    };
+    const double barest_us = time_us(barest), bare_us = time_us(bare);
     const double step_us = least_us([&] { result = step(loop.model, loop.state, inputs, loop.now_s()); });
     if (cycle >= 0) {
+      measured.barest_us.all.push_back(barest_us);
       measured.bare_us.all.push_back(bare_us);
       measured.step_us.all.push_back(step_us);
+      measured.times_barest.all.push_back(step_us / barest_us);
       measured.times_bare.all.push_back(step_us / bare_us);
       measured.stages.start();
       step(loop.model, loop.state, inputs, loop.now_s(), &measured.stages);
@@ -149,13 +157,16 @@ Measured measure(const Scene& scene, const char* law) {
 
 void print_scene(const Scene& scene) {
   Measured paper = measure(scene, "paper"), sidestep = measure(scene, "sidestep");
+  print(scene, "barest", sidestep.barest_us);
+  std::printf("\n");
   print(scene, "bare", sidestep.bare_us);
   std::printf("\n");
   print(scene, "paper", paper.step_us);
   std::printf("\n");
   print(scene, "sidestep", sidestep.step_us);
   const auto percent = [&](Stage stage) { return 100.0 * sidestep.stages.share(stage); };
-  std::printf("  %5.2f / %5.2f  %3.0f / %3.0f / %3.0f\n", sidestep.times_bare.at(0.5), sidestep.times_bare.mean(),
+  std::printf("  %5.2f / %5.2f  %5.2f / %5.2f  %3.0f / %3.0f / %3.0f\n", sidestep.times_barest.at(0.5),
+              sidestep.times_barest.mean(), sidestep.times_bare.at(0.5), sidestep.times_bare.mean(),
               percent(Stage::kClearance), percent(Stage::kLaw), percent(Stage::kShield));
   std::fflush(stdout);
 }
@@ -164,8 +175,8 @@ void print_scene(const Scene& scene) {
 
 int main() {
   std::printf("CPU time of one control cycle, us\n");
-  std::printf("%-11s %5s  %-10s %9s %9s %9s %9s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
-              "times bare", "clearance / law / shield, %");
+  std::printf("%-11s %5s  %-10s %9s %9s %9s %9s  %13s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
+              "times barest", "times bare", "clearance / law / shield, %");
   for (const int spheres : {10, 50, 500, 4096}) {
     const int cycles = spheres <= 50 ? 4000 : 300;
     print_scene({"in the room", spheres, kRoom, cycles});
