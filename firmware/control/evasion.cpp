@@ -10,7 +10,7 @@ namespace {
 constexpr int kMostWays = 4;         // 2^4 combinations of sides
 constexpr int kMostObstacles = 16;   // looked at in a rollout
 constexpr double kStep_s = 0.05;     // of a rollout
-constexpr int kMostSteps = 256;      // of a rollout
+constexpr int kMostSteps = 256;      // of a rollout: more than the longest horizon, 10 s, and what is after
 constexpr double kAfter_s = 0.2;     // looked at beyond the last approach
 constexpr double kMissWeight = 1e4;  // cost of a metre of missing clearance
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eiquadprog/eiquadprog-rt.hpp>
+#include <optional>
 
 namespace sidestep {
 namespace {
@@ -159,46 +160,44 @@ JointVector eased(const Nearness& near, const JointVector& row) {
   return near.tool_jacobian.rows() == 6 ? eased<6>(near, row) : eased<3>(near, row);
 }
 
-/// Moves the wish just as far as one row asks that it does not meet. False where that is not the solution: another row
-/// or the range is against it, or a hard row has to be given up.
-bool meet_one(const ShieldRows& rows, const VelocityRange& range, const Nearness& near, const ShieldRow& one,
-              QpSolution& solution) {
+/// The wish moved just as far as one row asks that it does not meet. Nothing where that is not the solution: another
+/// row or the range is against it, or a hard row has to be given up.
+std::optional<QpSolution> meet_one(const ShieldRows& rows, const VelocityRange& range, const Nearness& near,
+                                   const ShieldRow& one) {
   const JointVector along = eased(near, one.row);
   const double give_mps = relief(near, one.tier);
   const double lack = lack_mps(one, near.wish_radps);
   const double pull = lack / (one.row.dot(along) + give_mps * give_mps);
   const double given_up_mps = pull * give_mps * give_mps;
-  if (one.tier == Tier::kHard && given_up_mps > kNegligible_mps) return false;
+  if (one.tier == Tier::kHard && given_up_mps > kNegligible_mps) return {};
   const JointVector velocity_radps = near.wish_radps + pull * along;
   const bool met = !leaves(range, velocity_radps) && std::all_of(rows.begin(), rows.end(), [&](const ShieldRow& row) {
     const double rounding_mps = 1e-12;
     return lack_mps(row, velocity_radps) <= (row.tier == one.tier ? given_up_mps : 0.0) + rounding_mps;
   });
-  if (!met) return false;
-  solution = {velocity_radps, 0.5 * pull * lack, one.tier == Tier::kHard ? given_up_mps : 0.0};
-  return true;
+  if (!met) return {};
+  return QpSolution{velocity_radps, 0.5 * pull * lack, one.tier == Tier::kHard ? given_up_mps : 0.0};
 }
 
 /// Most cycles need no QP: the wish itself will do, or what one row makes of it.
-bool solve_simple(const ShieldRows& rows, const VelocityRange& range, const Nearness& near, QpSolution& solution) {
-  if (leaves(range, near.wish_radps)) return false;
+std::optional<QpSolution> solve_simple(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
+  if (leaves(range, near.wish_radps)) return {};
   const ShieldRow* worst = nullptr;
   double most_mps = 0.0;
   for (const ShieldRow& row : rows) {
     const double lack = lack_mps(row, near.wish_radps);
-    if (!(lack > most_mps)) continue;
+    if (!(lack > most_mps)) continue;  // a wish that is no number goes on as it is, to be found at the end
     most_mps = lack;
     worst = &row;
   }
-  if (worst) return meet_one(rows, range, near, *worst, solution);
-  solution = {near.wish_radps};
-  return true;
+  if (worst) return meet_one(rows, range, near, *worst);
+  return QpSolution{near.wish_radps};
 }
 
 }  // namespace
 
 QpSolution solve(const ShieldRows& rows, const VelocityRange& range, const Nearness& nearness) {
-  if (QpSolution simple; solve_simple(rows, range, nearness, simple)) return simple;
+  if (const auto simple = solve_simple(rows, range, nearness)) return *simple;
   constexpr int kCommonJoints = 7;
   return nearness.wish_radps.size() <= kCommonJoints ? solve_for<kCommonJoints>(rows, range, nearness)
                                                      : solve_for<kMaxJoints>(rows, range, nearness);
