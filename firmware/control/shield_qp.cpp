@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <eiquadprog/eiquadprog-rt.hpp>
-#include <optional>
+
+#include "firmware/control/few_rows.h"
 
 namespace sidestep {
 namespace {
@@ -11,22 +12,10 @@ namespace {
 constexpr int kMostIterations = 200;
 constexpr int kMostRounds = 3;
 
-// Unknowns: the joint velocities, then a slack for each tier. A slack is scaled so that its weight is 1; what is left
-// of the weight is by how much a unit of it relieves a row: 1 / sqrt(weight).
-constexpr double kHardRelief = 1e-3;
-constexpr double kPassRelief = 3e-2;
-
-/// A hard row that is given up by less than this is none that the others could hide behind.
-constexpr double kNegligible_mps = 1e-4;
-
-double relief(const Nearness& near, Tier tier) {
-  if (tier == Tier::kHard) return kHardRelief;
-  if (tier == Tier::kPass) return kPassRelief;
-  return 1.0 / std::sqrt(near.comfort_weight);
-}
-
 /// min 1/2 x' hessian x + gradient' x  subject to  conditions x + offsets >= 0, for at most so many joints and rows:
-/// most arms have 7 joints, most cycles few rows, and all of a problem's size is worked through.
+/// most arms have 7 joints, most cycles few rows, and all of a problem's size is worked through. Unknowns: the joint
+/// velocities, then a slack for each tier, scaled so that its weight is 1 and a unit of it relieves the rows by
+/// relief().
 template <int joint_capacity, int row_capacity>
 struct Problem {
   static constexpr int kUnknowns = joint_capacity + kTiers;
@@ -135,69 +124,10 @@ QpSolution solve_for(const ShieldRows& rows, const VelocityRange& range, const N
   return solve_sized<joint_capacity, kMaxRows>(rows, range, near);
 }
 
-bool leaves(const VelocityRange& range, const JointVector& velocity_radps) {
-  return (velocity_radps.array() < range.lower_radps.array()).any() ||
-         (velocity_radps.array() > range.upper_radps.array()).any();
-}
-
-/// What a row lacks, m/s.
-double lack_mps(const ShieldRow& row, const JointVector& velocity_radps) {
-  return row.bound - row.row.dot(velocity_radps);
-}
-
-/// hessian^-1 row, by the inverse of the small matrix J J^T + 1 / w.
-template <int rows>
-JointVector eased(const Nearness& near, const JointVector& row) {
-  const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = near.tool_jacobian;
-  Eigen::Matrix<double, rows, rows> gram = jacobian.lazyProduct(jacobian.transpose());
-  gram.diagonal().array() += 1.0 / near.tool_weight;
-  const Eigen::Matrix<double, rows, 1> tool = gram.inverse() * jacobian.lazyProduct(row);
-  return row - jacobian.transpose().lazyProduct(tool);
-}
-
-JointVector eased(const Nearness& near, const JointVector& row) {
-  if (near.tool_weight == 0.0) return row;
-  return near.tool_jacobian.rows() == 6 ? eased<6>(near, row) : eased<3>(near, row);
-}
-
-/// The wish moved just as far as one row asks that it does not meet. Nothing where that is not the solution: another
-/// row or the range is against it, or a hard row has to be given up.
-std::optional<QpSolution> meet_one(const ShieldRows& rows, const VelocityRange& range, const Nearness& near,
-                                   const ShieldRow& one) {
-  const JointVector along = eased(near, one.row);
-  const double give_mps = relief(near, one.tier);
-  const double lack = lack_mps(one, near.wish_radps);
-  const double pull = lack / (one.row.dot(along) + give_mps * give_mps);
-  const double given_up_mps = pull * give_mps * give_mps;
-  if (one.tier == Tier::kHard && given_up_mps > kNegligible_mps) return {};
-  const JointVector velocity_radps = near.wish_radps + pull * along;
-  const bool met = !leaves(range, velocity_radps) && std::all_of(rows.begin(), rows.end(), [&](const ShieldRow& row) {
-    const double rounding_mps = 1e-12;
-    return lack_mps(row, velocity_radps) <= (row.tier == one.tier ? given_up_mps : 0.0) + rounding_mps;
-  });
-  if (!met) return {};
-  return QpSolution{velocity_radps, 0.5 * pull * lack, one.tier == Tier::kHard ? given_up_mps : 0.0};
-}
-
-/// Most cycles need no QP: the wish itself will do, or what one row makes of it.
-std::optional<QpSolution> solve_simple(const ShieldRows& rows, const VelocityRange& range, const Nearness& near) {
-  if (leaves(range, near.wish_radps)) return {};
-  const ShieldRow* worst = nullptr;
-  double most_mps = 0.0;
-  for (const ShieldRow& row : rows) {
-    const double lack = lack_mps(row, near.wish_radps);
-    if (!(lack > most_mps)) continue;  // a wish that is no number goes on as it is, to be found at the end
-    most_mps = lack;
-    worst = &row;
-  }
-  if (worst) return meet_one(rows, range, near, *worst);
-  return QpSolution{near.wish_radps};
-}
-
 }  // namespace
 
 QpSolution solve(const ShieldRows& rows, const VelocityRange& range, const Nearness& nearness) {
-  if (const auto simple = solve_simple(rows, range, nearness)) return *simple;
+  if (const auto simple = meet_few_rows(rows, range, nearness)) return *simple;
   constexpr int kCommonJoints = 7;
   return nearness.wish_radps.size() <= kCommonJoints ? solve_for<kCommonJoints>(rows, range, nearness)
                                                      : solve_for<kMaxJoints>(rows, range, nearness);

@@ -26,6 +26,13 @@ class BoundedList {
   bool is_full() const { return size_ == capacity; }
   /// Only while it is not full.
   void add(const T& element) { std::uninitialized_copy_n(&element, 1, data() + size_++); }
+  /// An element made of these.
+  template <typename... Parts>
+  void emplace(const Parts&... parts) {
+    ::new (static_cast<void*>(data() + size_++)) T{parts...};
+  }
+  /// Puts the last element in the place of another, which goes.
+  void remove(int i) { (*this)[i] = (*this)[--size_]; }
   void clear() { size_ = 0; }
 
   T& operator[](int i) { return data()[i]; }
