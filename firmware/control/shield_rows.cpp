@@ -22,16 +22,26 @@ double least_mps(const JointVector& row, const VelocityRange& range) {
   return sum_mps;
 }
 
-/// Adds a row; to a full list instead of the least pressing one, if it presses more.
-void add(const VelocityRange& range, const ShieldRow& row, ShieldRows& rows) {
-  if (!rows.is_full()) {
-    rows.add(row);
-    return;
-  }
+/// Whether all velocities of one range are in another.
+bool is_within(const VelocityRange& inner, const VelocityRange& outer) {
+  return (inner.lower_radps.array() >= outer.lower_radps.array()).all() &&
+         (inner.upper_radps.array() <= outer.upper_radps.array()).all();
+}
+
+/// Puts a row into a full list, instead of the least pressing one there, if it presses more.
+void press_in(const VelocityRange& range, const ShieldRow& row, ShieldRows& rows) {
   const auto pressing_mps = [&](const ShieldRow& r) { return r.bound - least_mps(r.row, range); };
   const auto least = std::min_element(rows.begin(), rows.end(),
                                       [&](const auto& a, const auto& b) { return pressing_mps(a) < pressing_mps(b); });
   if (pressing_mps(*least) < pressing_mps(row)) *least = row;
+}
+
+void add(const VelocityRange& range, const JointVector& row, double bound, Tier tier, double other_bound,
+         ShieldRows& rows) {
+  if (rows.is_full())
+    press_in(range, {row, bound, tier, other_bound}, rows);
+  else
+    rows.emplace(row, bound, tier, other_bound);
 }
 
 /// Distance barrier of one tier: d' >= -gain (d - clearance).
@@ -64,7 +74,13 @@ class RowMaker {
  public:
   RowMaker(const ShieldSettings& settings, const Surroundings& now, const VelocityRange& lasting,
            const VelocityRange& range, RowSets& rows)
-      : settings_(settings), now_(now), axes_(now.posture), lasting_(lasting), range_(range), rows_(rows) {
+      : settings_(settings),
+        now_(now),
+        axes_(now.posture),
+        lasting_(lasting),
+        range_(range),
+        within_(is_within(range, lasting)),
+        rows_(rows) {
     for (const LinkShape& shape : now.arm.shapes) links_.add(placed(now.posture, shape));
   }
 
@@ -117,12 +133,14 @@ class RowMaker {
   /// `least`: m/s, that the row can come to within lasting_. Rows that every velocity meets are left out.
   void add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
     const double bound_mps = std::min(hard_barrier(settings_, now_, row, room_m, closing_mps), kLargestDemand_mps);
-    if (bound_mps > least) add(lasting_, {row, bound_mps, Tier::kHard}, rows_.plan);
-    if (bound_mps > least_mps(row, range_)) add(range_, {row, bound_mps, Tier::kHard}, rows_.step);
+    const bool lasts = bound_mps > least;
+    if (lasts) add(lasting_, row, bound_mps, Tier::kHard, 0.0, rows_.plan);
+    if (within_ && !lasts) return;
+    if (bound_mps > least_mps(row, range_)) add(range_, row, bound_mps, Tier::kHard, 0.0, rows_.step);
   }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
     bound_mps = std::min(bound_mps, kLargestDemand_mps);
-    if (bound_mps > least) add(lasting_, {row, bound_mps, tier, other_bound_mps}, rows_.plan);
+    if (bound_mps > least) add(lasting_, row, bound_mps, tier, other_bound_mps, rows_.plan);
   }
 
   /// The side on which a link leaves the way of an obstacle that comes straight at it: the one it is already moving to.
@@ -140,6 +158,7 @@ class RowMaker {
   BoundedList<Capsule, kMaxShapes> links_;
   const VelocityRange& lasting_;
   const VelocityRange& range_;
+  const bool within_;  ///< range_, in lasting_: then no row can come to less in it
   RowSets& rows_;
 };
 
