@@ -15,6 +15,7 @@ struct Capsule {
   Vector3 centre() const { return 0.5 * (start + end); }
   /// From the centre to the farthest point, m.
   double extent_m() const { return 0.5 * (end - start).norm() + radius_m; }
+  bool is_sphere() const { return start == end; }
 };
 
 /// The two nearest points of two segments; `a` on the first, `b` on the second.
@@ -23,12 +24,17 @@ struct NearestPoints {
   Vector3 b;
 };
 
+/// What is nearest to x from 0 to 1. Without a branch, which no processor could foresee here.
+inline double share(double x) {
+  return std::max(0.0, std::min(1.0, x));
+}
+
 /// Point of the segment start-end that is nearest to p. All in one frame, m.
 inline Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
   const Vector3 axis = end - start;
   const double length2 = axis.squaredNorm();
   if (length2 <= 0.0) return start;
-  return start + std::clamp(axis.dot(p - start) / length2, 0.0, 1.0) * axis;
+  return start + share(axis.dot(p - start) / length2) * axis;
 }
 
 /// Nearest points of the axes of two capsules of some length; well defined for parallel ones too.
@@ -36,8 +42,8 @@ NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b);
 
 /// Nearest points of the axes of any two capsules. Most obstacles are spheres, so that case comes first and inline.
 inline NearestPoints nearest_on_axes(const Capsule& a, const Capsule& b) {
-  if (b.start == b.end) return {nearest_on_segment(a.start, a.end, b.start), b.start};
-  if (a.start == a.end) return {a.start, nearest_on_segment(b.start, b.end, a.start)};
+  if (b.is_sphere()) return {nearest_on_segment(a.start, a.end, b.start), b.start};
+  if (a.is_sphere()) return {a.start, nearest_on_segment(b.start, b.end, a.start)};
   return nearest_on_segments(a, b);
 }
 

@@ -10,11 +10,12 @@ struct Link {
   Capsule capsule;
   Vector3 axis;
   double per_length2;  ///< 1 / |axis|^2, 1/m2; 0 for a sphere
+  bool moves;
 
   /// From the nearest point of the axis to p.
   Vector3 gap_to(const Vector3& p) const {
     const Vector3 from_start = p - capsule.start;
-    return from_start - std::clamp(axis.dot(from_start) * per_length2, 0.0, 1.0) * axis;
+    return from_start - share(axis.dot(from_start) * per_length2) * axis;
   }
 };
 
@@ -30,7 +31,7 @@ struct Links {
       const Capsule capsule = placed(posture, shape);
       const Vector3 axis = capsule.end - capsule.start;
       const double length2_m2 = axis.squaredNorm();
-      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0});
+      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, shape.body > 0});
       lower = lower.cwiseMin(capsule.start).cwiseMin(capsule.end);
       upper = upper.cwiseMax(capsule.start).cwiseMax(capsule.end);
       radius_m = std::max(radius_m, capsule.radius_m);
@@ -61,43 +62,63 @@ class Gatherer {
         clearance_(clearance) {}
 
   void gather(const Obstacle& obstacle, int index, double growth_m) {
-    const Capsule& reported = obstacle.capsule;
-    const Vector3 axis = reported.end - reported.start;
-    const bool is_sphere = axis.isZero(0.0);
-    const Length length = is_sphere ? Length{} : length_of(obstacle, 0.5 * axis.norm());
-    const Vector3 centre = reported.start + 0.5 * axis + obstacle.velocity_mps * view_.age_s;
-    const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
-    const double radii_m = links_.radius_m + reported.radius_m + growth_m;
-    if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
-
-    if (is_sphere)
-      gather_sphere({centre, centre, reported.radius_m + growth_m}, obstacle.velocity_mps, index, travel_m);
+    if (obstacle.capsule.is_sphere())
+      gather_sphere(obstacle, index, growth_m);
     else
-      gather_long(view_.present(index), index, radii_m, core_m, travel_m);
+      gather_long(obstacle, index, growth_m);
   }
 
  private:
   /// The distance to a link is a convex function of the place, so that it falls no faster on the way than at first.
-  void gather_sphere(const Capsule& sphere, const Vector3& velocity_mps, int index, double travel_m) {
-    const Vector3& centre = sphere.start;
-    const double radii_m = links_.radius_m + sphere.radius_m;
+  void gather_sphere(const Obstacle& obstacle, int index, double growth_m) {
+    const Vector3& velocity_mps = obstacle.velocity_mps;
+    const Vector3 centre = obstacle.capsule.start + velocity_mps * view_.age_s;
+    const double radius_m = obstacle.capsule.radius_m + growth_m, radii_m = links_.radius_m + radius_m;
+    const double travel_m = velocity_mps.norm() * horizon_s_;
     double reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
+    if (links_.distance2_m2(centre) > reach2_m2) return;
+
     for (int s = 0; s < links_.shapes.size(); ++s) {
       const Link& link = links_.shapes[s];
       const Vector3 gap = link.gap_to(centre);
       const double distance2_m2 = gap.squaredNorm();
       if (distance2_m2 > reach2_m2) continue;
       const double distance_m = std::sqrt(distance2_m2);
-      const double closing_m = std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m);
-      if (distance_m > reach_m(radii_m, 0.0, std::max(0.0, closing_m))) continue;
-      const Proximity now = measure_pair(link.capsule, sphere);
-      look_at(s, index, now, velocity_mps, travel_m,
-              [&] { return predict_approach(link.capsule, sphere.radius_m, centre, velocity_mps, horizon_s_); });
+      const double closing_m = std::max(0.0, std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m));
+      if (distance_m > reach_m(link, radii_m, closing_m)) continue;
+      const Proximity now = measure_sphere(link, centre, radius_m, gap, distance_m);
+      look_at(s, index, now, velocity_mps, travel_m, [&] {
+        if (closing_m == 0.0) return Approach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
+        return predict_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
+      });
       reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
     }
   }
 
-  void gather_long(const Obstacle& present, int index, double radii_m, double core_m, double travel_m) {
+  /// measure_pair() of what is known already.
+  static Proximity measure_sphere(const Link& link, const Vector3& centre, double radius_m, const Vector3& gap,
+                                  double distance_m) {
+    const double apart_m = 1e-9;
+    if (distance_m <= apart_m) return measure_pair(link.capsule, {centre, centre, radius_m});
+    Proximity now;
+    now.distance_m = distance_m - link.capsule.radius_m - radius_m;
+    now.axis_distance_m = distance_m;
+    now.on_arm = centre - gap;
+    now.on_obstacle = centre;
+    now.normal = -gap / distance_m;
+    return now;
+  }
+
+  void gather_long(const Obstacle& obstacle, int index, double growth_m) {
+    const Capsule& reported = obstacle.capsule;
+    const Vector3 half_axis = 0.5 * (reported.end - reported.start);
+    const Length length = length_of(obstacle, half_axis.norm());
+    const Vector3 centre = reported.start + half_axis + obstacle.velocity_mps * view_.age_s;
+    const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
+    const double radii_m = links_.radius_m + reported.radius_m + growth_m;
+    if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
+
+    const Obstacle present = view_.present(index);
     for (int s = 0; s < links_.shapes.size(); ++s) {
       const Capsule& link = links_.shapes[s].capsule;
       const NearestPoints points = nearest_on_axes(link, present.capsule);
@@ -121,17 +142,16 @@ class Gatherer {
 
   /// velocity_mps: of the obstacle's nearest point. predict() says the approach of the pair.
   template <typename Predict>
-  void look_at(int shape, int obstacle, const Proximity& proximity, const Vector3& velocity_mps, double travel_m,
+  void look_at(int shape, int obstacle, Proximity now, const Vector3& velocity_mps, double travel_m,
                const Predict& predict) {
-    NearPair pair{proximity, {}, velocity_mps};
-    pair.now.shape = shape;
-    pair.now.obstacle = obstacle;
-    if (pair.now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = pair.now;
+    now.shape = shape;
+    now.obstacle = obstacle;
+    if (now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = now;
     if (arm_.shapes[shape].body == 0) return;
-    if (pair.now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = pair.now;
-    if (pair.now.distance_m - travel_m > limit_m_) return;
-    pair.approach = predict();
-    if (pressing_m(pair) < limit_m_) keep(pair);
+    if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
+    if (now.distance_m - travel_m > limit_m_) return;
+    const Approach approach = predict();
+    if (std::min(now.distance_m, approach.distance_m) < limit_m_) keep(now, approach, velocity_mps);
   }
 
   /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the
@@ -141,13 +161,18 @@ class Gatherer {
     return std::max(clearance_.nearest_axis.axis_distance_m + core_m, radii_m + surface_m);
   }
 
+  /// The same of one link: one that does not move can only be the nearest.
+  double reach_m(const Link& link, double radii_m, double travel_m) const {
+    return link.moves ? reach_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
+  }
+
   /// As soon as the list is full, only what is more pressing than the least pressing there comes in, for that one.
-  void keep(const NearPair& pair) {
+  void keep(const Proximity& now, const Approach& approach, const Vector3& velocity_mps) {
     auto& near = clearance_.near;
     if (near.is_full())
-      near[least_] = pair;
+      near[least_] = {now, approach, velocity_mps};
     else
-      near.add(pair);
+      near.emplace(now, approach, velocity_mps);
     if (!near.is_full()) return;
     const auto less = [](const NearPair& a, const NearPair& b) { return pressing_m(a) < pressing_m(b); };
     least_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());

@@ -6,7 +6,7 @@ namespace sidestep {
 namespace {
 
 /// rotation * v by columns; Eigen's product of small matrices makes calls.
-inline Vector3 turned(const Matrix3& rotation, const Vector3& v) {
+EIGEN_ALWAYS_INLINE Vector3 turned(const Matrix3& rotation, const Vector3& v) {
   return rotation.col(0) * v[0] + rotation.col(1) * v[1] + rotation.col(2) * v[2];
 }
 
@@ -28,8 +28,9 @@ Posture forward(const Arm& arm, const JointVector& q_rad) {
     posture.origin[i] = posture.origin[i - 1] + turned(parent, placement.translation());
   }
   const Matrix3& last = posture.rotation[arm.joints];
-  posture.tool_rotation = last * arm.last_body_from_tool.linear();
-  posture.tool_position = posture.origin[arm.joints] + last * arm.last_body_from_tool.translation();
+  for (int axis = 0; axis < 3; ++axis)
+    posture.tool_rotation.col(axis) = turned(last, arm.last_body_from_tool.linear().col(axis));
+  posture.tool_position = posture.origin[arm.joints] + turned(last, arm.last_body_from_tool.translation());
   return posture;
 }
 

@@ -64,7 +64,7 @@ Obstacle moved(const Obstacle& obstacle, double dt_s) {
   Capsule& capsule = later.capsule;
   const Vector3 shift = obstacle.velocity_mps * dt_s;
   const Vector3 turn = obstacle.angular_velocity_radps * dt_s;
-  if (capsule.start == capsule.end || turn.squaredNorm() == 0.0) {
+  if (capsule.is_sphere() || turn.squaredNorm() == 0.0) {
     capsule.start += shift;
     capsule.end += shift;
     return later;

@@ -8,36 +8,62 @@
 namespace sidestep {
 namespace {
 
-/// A ball around a capsule.
-struct Ball {
+/// A link where it is, and the ball around it.
+struct Link {
+  Capsule capsule;
   Vector3 centre;
-  double radius_m;
-
-  explicit Ball(const Capsule& capsule) : centre(capsule.centre()), radius_m(capsule.extent_m()) {}
+  double extent_m;
 };
+using Links = BoundedList<Link, kMaxShapes>;
+
+/// Those that can move.
+Links place_links(const Arm& arm, const Posture& posture) {
+  Links links;
+  for (const LinkShape& shape : arm.shapes) {
+    if (shape.body == 0) continue;
+    const Capsule capsule = placed(posture, shape);
+    links.add({capsule, capsule.centre(), shape.capsule_body.extent_m()});
+  }
+  return links;
+}
+
+/// Least of least_m and what distance_m() says of the links, which is asked where the balls around them and around the
+/// obstacle are as near as that.
+template <typename Distance>
+double nearest_m(const Links& links, const Vector3& centre, double extent_m, double least_m,
+                 const Distance& distance_m) {
+  for (const Link& link : links) {
+    const double near_m = link.extent_m + extent_m + least_m;
+    if (near_m <= 0.0 || (link.centre - centre).squaredNorm() >= near_m * near_m) continue;
+    least_m = std::min(least_m, distance_m(link.capsule, least_m));
+  }
+  return least_m;
+}
+
+double nearest_to_sphere_m(const Links& links, const Vector3& centre, double radius_m, double least_m) {
+  return nearest_m(links, centre, radius_m, least_m, [&](const Capsule& link, double) {
+    return (centre - nearest_on_segment(link.start, link.end, centre)).norm() - link.radius_m - radius_m;
+  });
+}
+
+double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double least_m) {
+  const Capsule& capsule = obstacle.capsule;
+  return nearest_m(links, capsule.centre(), capsule.extent_m(), least_m,
+                   [&](const Capsule& link, double enough_m) { return surface_distance_m(link, obstacle, enough_m); });
+}
 
 }  // namespace
 
 double clearance_after(const Arm& arm, const Posture& posture, const Obstacle* obstacles, int count, double after_s,
                        double enough_m) {
-  BoundedList<Capsule, kMaxShapes> links;
-  BoundedList<Ball, kMaxShapes> around;
-  for (const LinkShape& shape : arm.shapes) {
-    if (shape.body == 0) continue;
-    links.add(placed(posture, shape));
-    around.add(Ball(links[links.size() - 1]));
-  }
-
+  const Links links = place_links(arm, posture);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];
-    const Vector3 centre = obstacle.capsule.centre() + obstacle.velocity_mps * after_s;
-    const double extent_m = obstacle.capsule.extent_m();
-    for (int l = 0; l < links.size(); ++l) {
-      const double near_m = around[l].radius_m + extent_m + least_m;
-      if (near_m <= 0.0 || (around[l].centre - centre).squaredNorm() >= near_m * near_m) continue;
-      least_m = std::min(least_m, surface_distance_m(links[l], moved(obstacle, after_s), least_m));
-    }
+    const Capsule& capsule = obstacle.capsule;
+    least_m = capsule.is_sphere() ? nearest_to_sphere_m(links, capsule.start + obstacle.velocity_mps * after_s,
+                                                        capsule.radius_m, least_m)
+                                  : nearest_to_long_m(links, moved(obstacle, after_s), least_m);
   }
   return least_m;
 }

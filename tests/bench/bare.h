@@ -7,8 +7,9 @@
 namespace sidestep::bench {
 
 /// The least that a controller of a whole arm among obstacles has to compute: forward kinematics; the distances of the
-/// moving links to every sphere and to one another, with the nearest points and the normal, by the same function as the
-/// controller; the tool's Jacobian and its damped least-squares inverse. No prediction, no rows, no limits, no shield.
+/// moving links to every sphere and to one another, with the nearest points and the normal, by the function that
+/// measures any pair of capsules; the tool's Jacobian and its damped least-squares inverse. No prediction, no rows, no
+/// limits, no shield.
 struct BareCycle {
   std::vector<Proximity> pairs;  ///< room for them is made in the first call
   JointVector velocity_radps;
