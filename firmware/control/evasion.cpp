@@ -9,25 +9,33 @@ namespace {
 
 constexpr int kMostWays = 4;         // 2^4 combinations of sides
 constexpr int kMostObstacles = 16;   // looked at in a rollout
-constexpr double kStep_s = 0.05;     // of a rollout
-constexpr int kMostSteps = 256;      // of a rollout: more than the longest horizon, 10 s, and what is after
+constexpr double kStep_s = 0.07;     // of a rollout
+constexpr int kMostSteps = 160;      // of a rollout: more than the longest horizon, 10 s, and what is after
 constexpr double kAfter_s = 0.2;     // looked at beyond the last approach
 constexpr double kMissWeight = 1e4;  // cost of a metre of missing clearance
 
 /// Another side has to be better by this much, or the arm would dither between two.
 constexpr double kClearlyBetter = 0.8;
 
-/// The obstacles of the near pairs where they are, and when the last of them comes closest.
+/// The obstacles of the near pairs where they are, and when those that come too close come closest: the closest of
+/// them, and the last.
 struct Threats {
   BoundedList<Obstacle, kMostObstacles> obstacles;
+  double worst_s = 0.0;
   double last_s = 0.0;
 };
 
-Threats find_threats(const Clearance& clearance, const ObstacleView& view) {
+Threats find_threats(const ShieldSettings& settings, const Clearance& clearance, const ObstacleView& view) {
   Threats threats;
   BoundedList<int, kMostObstacles> known;
+  double least_m = settings.pass_clearance_m;
   for (const NearPair& pair : clearance.near) {
-    threats.last_s = std::max(threats.last_s, pair.approach.time_s);
+    const Approach& approach = pair.approach;
+    if (approach.distance_m < settings.pass_clearance_m) threats.last_s = std::max(threats.last_s, approach.time_s);
+    if (approach.distance_m < least_m) {
+      least_m = approach.distance_m;
+      threats.worst_s = approach.time_s;
+    }
     if (known.is_full() || std::find(known.begin(), known.end(), pair.now.obstacle) != known.end()) continue;
     known.add(pair.now.obstacle);
     threats.obstacles.add(view.present(pair.now.obstacle));
@@ -61,7 +69,11 @@ Way way_of(const Surroundings& now, const JointVector& velocity_radps, double du
 class Judge {
  public:
   Judge(const ShieldSettings& settings, const Surroundings& now, const Nearness& nearness)
-      : settings_(settings), now_(now), nearness_(nearness), threats_(find_threats(now.clearance, now.obstacles)) {}
+      : settings_(settings),
+        now_(now),
+        nearness_(nearness),
+        threats_(find_threats(settings, now.clearance, now.obstacles)),
+        worst_step_(static_cast<int>(threats_.worst_s / kStep_s)) {}  // of every way, which goes on for kAfter_s
 
   /// Exact below too_much; else anything from there on, which takes less time to find out.
   double cost(const JointVector& velocity_radps, double too_much) {
@@ -94,7 +106,7 @@ class Judge {
   const Surroundings& now_;
   const Nearness& nearness_;
   const Threats threats_;
-  int worst_step_ = 0;
+  int worst_step_;
 };
 
 /// The ways that links may leave on either side: indices of rows, the first kMostWays.
