@@ -15,10 +15,10 @@ NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b) {
   // Nearest on the infinite lines, clamped to a; then the nearest on b to that, clamped; then once more on a and on b.
   const double determinant = uu * vv - uv * uv;
   const bool parallel = determinant <= 1e-12 * uu * vv;
-  double on_a = parallel ? 0.0 : share((uv * vw - vv * uw) / determinant);
-  double on_b = share((uv * on_a + vw) * per_vv);
-  on_a = share((uv * on_b - uw) * per_uu);
-  on_b = share((uv * on_a + vw) * per_vv);
+  double on_a = parallel ? 0.0 : std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);
+  double on_b = std::clamp((uv * on_a + vw) * per_vv, 0.0, 1.0);
+  on_a = std::clamp((uv * on_b - uw) * per_uu, 0.0, 1.0);
+  on_b = std::clamp((uv * on_a + vw) * per_vv, 0.0, 1.0);
   return {a.start + on_a * u, b.start + on_b * v};
 }
 

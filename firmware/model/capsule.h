@@ -24,17 +24,12 @@ struct NearestPoints {
   Vector3 b;
 };
 
-/// What is nearest to x from 0 to 1. Without a branch, which no processor could foresee here.
-inline double share(double x) {
-  return std::max(0.0, std::min(1.0, x));
-}
-
 /// Point of the segment start-end that is nearest to p. All in one frame, m.
 inline Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
   const Vector3 axis = end - start;
   const double length2 = axis.squaredNorm();
   if (length2 <= 0.0) return start;
-  return start + share(axis.dot(p - start) / length2) * axis;
+  return start + std::clamp(axis.dot(p - start) / length2, 0.0, 1.0) * axis;
 }
 
 /// Nearest points of the axes of two capsules of some length; well defined for parallel ones too.

@@ -15,7 +15,7 @@ struct Link {
   /// From the nearest point of the axis to p.
   Vector3 gap_to(const Vector3& p) const {
     const Vector3 from_start = p - capsule.start;
-    return from_start - share(axis.dot(from_start) * per_length2) * axis;
+    return from_start - std::clamp(axis.dot(from_start) * per_length2, 0.0, 1.0) * axis;
   }
 };
 
@@ -42,8 +42,12 @@ struct Links {
 };
 
 /// How pressing a pair is: the nearer now or at its approach, the more.
+double pressing_m(const Proximity& now, const Approach& approach) {
+  return std::min(now.distance_m, approach.distance_m);
+}
+
 double pressing_m(const NearPair& pair) {
-  return std::min(pair.now.distance_m, pair.approach.distance_m);
+  return pressing_m(pair.now, pair.approach);
 }
 
 double square(double x) {
@@ -86,27 +90,13 @@ class Gatherer {
       const double distance_m = std::sqrt(distance2_m2);
       const double closing_m = std::max(0.0, std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m));
       if (distance_m > reach_m(link, radii_m, closing_m)) continue;
-      const Proximity now = measure_sphere(link, centre, radius_m, gap, distance_m);
+      const Proximity now = proximity_of(link.capsule, radius_m, {centre - gap, centre}, -gap, distance_m);
       look_at(s, index, now, velocity_mps, travel_m, [&] {
         if (closing_m == 0.0) return Approach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
         return predict_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
       });
       reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
     }
-  }
-
-  /// measure_pair() of what is known already.
-  static Proximity measure_sphere(const Link& link, const Vector3& centre, double radius_m, const Vector3& gap,
-                                  double distance_m) {
-    const double apart_m = 1e-9;
-    if (distance_m <= apart_m) return measure_pair(link.capsule, {centre, centre, radius_m});
-    Proximity now;
-    now.distance_m = distance_m - link.capsule.radius_m - radius_m;
-    now.axis_distance_m = distance_m;
-    now.on_arm = centre - gap;
-    now.on_obstacle = centre;
-    now.normal = -gap / distance_m;
-    return now;
   }
 
   void gather_long(const Obstacle& obstacle, int index, double growth_m) {
@@ -151,7 +141,7 @@ class Gatherer {
     if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
     if (now.distance_m - travel_m > limit_m_) return;
     const Approach approach = predict();
-    if (std::min(now.distance_m, approach.distance_m) < limit_m_) keep(now, approach, velocity_mps);
+    if (pressing_m(now, approach) < limit_m_) keep(now, approach, velocity_mps);
   }
 
   /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the

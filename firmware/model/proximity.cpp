@@ -65,17 +65,8 @@ Proximity measure_box(const Capsule& link, const Obstacle& obstacle) {
 
 Proximity measure_pair(const Capsule& link, const Capsule& obstacle) {
   const NearestPoints points = nearest_on_axes(link, obstacle);
-  Proximity pair;
-  pair.on_arm = points.a;
-  pair.on_obstacle = points.b;
   const Vector3 gap = points.a - points.b;
-  pair.axis_distance_m = gap.norm();
-  pair.distance_m = pair.axis_distance_m - link.radius_m - obstacle.radius_m;
-  if (pair.axis_distance_m > 1e-9)
-    pair.normal = gap / pair.axis_distance_m;
-  else if (link.end != link.start)  // the axes meet: any way out across the link
-    pair.normal = (link.end - link.start).unitOrthogonal();
-  return pair;
+  return proximity_of(link, obstacle.radius_m, points, gap, gap.norm());
 }
 
 Proximity measure_pair(const Capsule& link, const Obstacle& obstacle) {

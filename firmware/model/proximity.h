@@ -27,6 +27,22 @@ struct Approach {
   bool head_on = false;               ///< the path meets the link's axis, so that -normal would do as well
 };
 
+/// The proximity of a link to an axis or point of that radius, whose nearest points are known, and the gap between them
+/// (from the obstacle to the arm) and its length; the normal is defined even where the axes meet.
+inline Proximity proximity_of(const Capsule& link, double radius_m, const NearestPoints& points, const Vector3& gap,
+                              double gap_m) {
+  Proximity pair;
+  pair.on_arm = points.a;
+  pair.on_obstacle = points.b;
+  pair.axis_distance_m = gap_m;
+  pair.distance_m = gap_m - link.radius_m - radius_m;
+  if (gap_m > 1e-9)
+    pair.normal = gap / gap_m;
+  else if (link.end != link.start)  // the axes meet: any way out across the link
+    pair.normal = (link.end - link.start).unitOrthogonal();
+  return pair;
+}
+
 /// The proximity of two placed capsules; the normal is defined even where the axes meet.
 Proximity measure_pair(const Capsule& link, const Capsule& obstacle);
 
