@@ -10,7 +10,7 @@ bool leaves(const VelocityRange& range, const JointVector& velocity_radps) {
          (velocity_radps.array() > range.upper_radps.array()).any();
 }
 
-/// (J J^T + 1 / w)^-1 J, with which hessian^-1 is I - J^T of it.
+/// (J J^T + 1 / w)^-1 J; J^T of it is what is missing to I in the inverse of the nearness's Hessian, I + w J^T J.
 template <int rows>
 TaskJacobian tool_share(const Nearness& near) {
   const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = near.tool_jacobian;
@@ -45,10 +45,10 @@ class FewRows {
 
  private:
   static constexpr int kFew = 3;
-  static constexpr int kMostTries = 6;
+  static constexpr int kMostTries = 6;  // rows come and go
   using Few = Eigen::Matrix<double, kFew, 1>;
 
-  /// A row that is met just so, and hessian^-1 row.
+  /// A row that is met just so, and the inverse of the Hessian times it.
   struct Met {
     const ShieldRow* row;
     JointVector along;
