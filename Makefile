@@ -21,22 +21,20 @@ CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-reco
 INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
 LIBS     := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
 
-sources   = $(filter-out %/main.cpp,$(wildcard $(1)))
+sources   = $(filter-out %/main.cpp,$(shell find $(1) -name '*.cpp'))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
-FIRMWARE := $(call objects,$(call sources,firmware/*/*.cpp))
-SIM      := $(call objects,$(call sources,host/sim/*.cpp))
-RELAY    := $(call objects,$(call sources,host/relay/*.cpp))
+FIRMWARE := $(call objects,$(call sources,firmware))
+SIM      := $(call objects,$(call sources,host/sim))
+RELAY    := $(call objects,$(call sources,host/relay))
 REPLAY   := $(call objects,$(wildcard host/replay/*.cpp))
-CAMPAIGN := $(call objects,$(call sources,host/campaign/*.cpp))
+CAMPAIGN := $(call objects,$(call sources,host/campaign))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
-TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(wildcard tests/unit/*.cpp tests/loop/*.cpp tests/faults/*.cpp))
+TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(shell find tests/unit tests/loop tests/faults -name '*.cpp'))
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
 # What the fuzzers look at.
-FUZZED   := $(call objects,$(wildcard firmware/model/*.cpp) \
-              $(patsubst %,firmware/%.cpp,control/inputs control/old_places io/admission io/arm_reader io/config \
-                io/config_section io/find_file io/neighbourhood io/obstacle_encoder io/reported io/surroundings \
-                io/yaml_document))
+FUZZED   := $(call objects,$(call sources,firmware/base firmware/model firmware/io/config) \
+              $(wildcard firmware/control/*.cpp) $(filter-out %/wire.cpp,$(wildcard firmware/io/lcm/*.cpp)))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check

@@ -5,8 +5,8 @@
 #include <csignal>
 #include <iostream>
 
-#include "firmware/io/config.h"
-#include "firmware/io/loop.h"
+#include "firmware/io/config/config.h"
+#include "firmware/io/loop/loop.h"
 
 namespace {
 

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/control/extrapolation.h"
 #include "firmware/control/guided_law.h"
-#include "firmware/control/limits.h"
-#include "firmware/control/observe.h"
-#include "firmware/control/paper_law.h"
-#include "firmware/control/present.h"
-#include "firmware/control/shield.h"
+#include "firmware/control/input_monitor.h"
+#include "firmware/control/paper/paper_law.h"
+#include "firmware/control/shield/shield.h"
 #include "firmware/control/sidestep_law.h"
+#include "firmware/model/velocity_range.h"
 
 namespace sidestep {
 namespace {
 
 /// The velocity that both the arm's own words and its positions speak for: the lesser, and rest where they contradict.
-double believed_radps(double said_radps, double seen_radps) {
+double minmod(double said_radps, double seen_radps) {
   if (said_radps * seen_radps <= 0.0) return 0.0;
   return std::abs(said_radps) < std::abs(seen_radps) ? said_radps : seen_radps;
 }
@@ -25,7 +25,7 @@ double believed_radps(double said_radps, double seen_radps) {
 void start_from(const Model& model, const ArmState& arm, State& next) {
   const JointVector& fastest = model.arm.limits.velocity_radps;
   next.position_rad = arm.held_rad.size() > 0 ? arm.held_rad : arm.position_rad;
-  next.velocity_radps = arm.velocity_radps.binaryExpr(next.arm_rate_radps, &believed_radps);
+  next.velocity_radps = arm.velocity_radps.binaryExpr(next.arm_rate_radps, &minmod);
   next.velocity_radps = next.velocity_radps.cwiseMax(-fastest).cwiseMin(fastest);
   next.rate_radps = next.velocity_radps;
   next.planning = false;
@@ -38,7 +38,8 @@ const Guide* guide_to_follow(const Model& model, const Inputs& inputs) {
 }
 
 /// The joint velocity that the law wishes for; at rest unless tracking.
-Wish ask_law(const Model& model, const Situation& situation, const State& state, const Guide* guide, double now_s) {
+NominalCommand evaluate_law(const Model& model, const Situation& situation, const State& state, const Guide* guide,
+                            double now_s) {
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const SidestepGains& gains = model.settings.sidestep;
   if (guide) return guided_law(gains, situation, *guide, now_s);
@@ -104,7 +105,7 @@ VelocityRange next_range(const Model& model, const State& state, const ArmState&
 /// A guide is a detour already.
 double comfort_weight(const ShieldSettings& shield, const Situation& situation, Mode mode, bool guided) {
   if (mode != Mode::kTrack || guided) return shield.comfort_least_weight;
-  const double distance_m = (situation.target.position_m - situation.posture.tool_position).norm();
+  const double distance_m = (situation.target.position_m - situation.poses.tool_position).norm();
   const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
   return shield.comfort_least_weight +
          std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
@@ -112,19 +113,20 @@ double comfort_weight(const ShieldSettings& shield, const Situation& situation, 
 
 /// The wish made safe: by the shield where it is on, else left to the limits alone.
 JointVector keep_clear(const Model& model, const Situation& situation, const ArmState& arm, const VelocityRange& range,
-                       const Wish& wish, bool guided, State& state) {
+                       const NominalCommand& wish, bool guided, State& state) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   if (settings.law == Law::kPaper || !settings.shield.enabled) return wish.velocity_radps;
   if (!moves(mode)) return wish.velocity_radps;
-  const Surroundings around{model.arm,           situation.posture,
-                            arm.position_rad,    state.velocity_radps,
-                            situation.clearance, situation.obstacles,
-                            model.self_pairs,    state.evasion_radps,
-                            settings.period_s(), comfort_weight(settings.shield, situation, mode, guided)};
-  const VelocityRange lasting =
-      lasting_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
-  const Shielded safe = shield(settings.shield, around, lasting, range, situation.tool_jacobian, wish.velocity_radps);
+  const ShieldInput around{model.arm,           situation.poses,
+                           arm.position_rad,    state.velocity_radps,
+                           situation.clearance, situation.obstacles,
+                           model.self_pairs,    state.evasion_radps,
+                           settings.period_s(), comfort_weight(settings.shield, situation, mode, guided)};
+  const VelocityRange sustainable =
+      sustainable_range(model.arm.limits, arm.position_rad, arm.position_rad, settings.period_s());
+  const Shielded safe =
+      shield(settings.shield, around, sustainable, range, situation.tool_jacobian, wish.velocity_radps);
   state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
   return safe.velocity_radps;
 }
@@ -145,36 +147,36 @@ Command gate(const Model& model, const ArmState& arm, const VelocityRange& range
 
 /// A stream of commands starts from where the arm is, not from where it was before it stopped by itself. It runs in
 /// every mode that moves the arm, and after a fault until the arm is at rest.
-bool goes_on(const State& state, const Facts& facts) {
-  if (facts.arm_starting || state.supervision.mode == Mode::kWait) return false;
-  const bool heard = facts.arm_fresh && state.arm_received_s > state.stopped_s;
+bool stream_continues(const State& state, const InputStatus& status) {
+  if (status.arm_starting || state.supervision.mode == Mode::kWait) return false;
+  const bool heard = status.arm_fresh && state.arm_received_s > state.stopped_s;
   if (!state.commanding && !heard) return false;
   if (state.supervision.mode == Mode::kFault) return !at_rest(state);
   return true;
 }
 
 /// A wish that is not finite is a defect somewhere: stop, and start over after a while of consistent arm state.
-void distrust(double now_s, State& next) {
+void latch_not_finite(double now_s, State& next) {
   next.supervision = {Mode::kFault, Fault::kNotFinite, "fault: a result was not finite"};
   next.consistent_since_s = now_s;
 }
 
-void remember(const Command& command, const Wish& wish, const Facts& facts, State& next) {
+void remember(const Command& command, const NominalCommand& wish, const InputStatus& status, State& next) {
   next.position_rad = command.position_rad;
   next.velocity_radps = command.velocity_radps;
   next.planning = next.supervision.mode == Mode::kTrack;
   next.planned_mps = wish.tool_velocity_mps;
-  next.commanding = goes_on(next, facts);
+  next.commanding = stream_continues(next, status);
 }
 
 void report_tool(const Situation& situation, Report& report) {
-  report.tool_position_m = situation.posture.tool_position;
+  report.tool_position_m = situation.poses.tool_position;
   report.tool_velocity_mps = situation.tool_jacobian.topRows<3>() * situation.velocity_radps;
 }
 
 void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
   if (!guide || mode != Mode::kTrack) return;
-  report.outlook = guide->outlook;
+  report.foresight_status = guide->foresight_status;
   report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
   if (guide->knots > 0) report.guide = guide;
 }
@@ -200,39 +202,39 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   Report& report = result.report;
   State& next = result.next = state;
 
-  const Facts facts = observe(model, inputs, now_s, next);
-  next.supervision = next_mode(state.supervision, facts);
-  const bool streaming = next.commanding = next.commanding && !facts.arm_starting;
-  if (facts.arm_known) {
+  const InputStatus status = monitor_inputs(model, inputs, now_s, next);
+  next.supervision = next_mode(state.supervision, status);
+  const bool streaming = next.commanding = next.commanding && !status.arm_starting;
+  if (status.arm_known) {
     const ArmState& arm = *inputs.arm.message;
     if (!streaming) start_from(model, arm, next);
 
-    const Posture posture = forward(model.arm, arm.position_rad);
+    const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad);
     passed(Stage::kObserve);
     const ObstacleView obstacles = view_obstacles(model, inputs.obstacles, now_s);
     const Reach reach{model.settings.shield.range_m, model.settings.shield.pass_horizon_s};
-    const Clearance clearance = measure_clearance(model.arm, posture, obstacles, reach);
+    const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
     passed(Stage::kClearance);
-    const Target target = inputs.target.message ? present(inputs.target, now_s) : Target{};
+    const Target target = inputs.target.message ? extrapolated(inputs.target, now_s) : Target{};
 
-    const TaskJacobian jacobian = tool_jacobian(posture, target.tracks_orientation ? 6 : 3);
-    const Situation situation{model.arm,          posture, jacobian,  arm.position_rad,
-                              arm.velocity_radps, target,  obstacles, clearance};
+    const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
+    const Situation situation{model.arm,          poses,  jacobian,  arm.position_rad,
+                              arm.velocity_radps, target, obstacles, clearance};
     const Guide* guide = guide_to_follow(model, inputs);
-    const Wish wish = ask_law(model, situation, next, guide, now_s);
+    const NominalCommand wish = evaluate_law(model, situation, next, guide, now_s);
     passed(Stage::kLaw);
     const VelocityRange range = next_range(model, next, arm);
     const JointVector safe = keep_clear(model, situation, arm, range, wish, guide != nullptr, next);
     passed(Stage::kShield);
-    if (!safe.allFinite()) distrust(now_s, next);
+    if (!safe.allFinite()) latch_not_finite(now_s, next);
     result.command = gate(model, arm, range, safe, next, report.limiting);
-    remember(result.command, wish, facts, next);
+    remember(result.command, wish, status, next);
     passed(Stage::kGate);
 
     report_guide(next.supervision.mode, inputs.guide, now_s, report);
     report_tool(situation, report);
     report_clearance(clearance, obstacles, report);
-    if (inputs.target.message) report.target_distance_m = (target.position_m - posture.tool_position).norm();
+    if (inputs.target.message) report.target_distance_m = (target.position_m - poses.tool_position).norm();
     report.shield_correction_radps = (safe - wish.velocity_radps).norm();
     if (report.shield_correction_radps > 1e-6) report.limiting |= kLimitingShield;
     report.beta = wish.beta;

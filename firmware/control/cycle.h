@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/control/guide.h"
-#include "firmware/control/inputs.h"
+#include "firmware/control/message_order.h"
 #include "firmware/control/stages.h"
 #include "firmware/control/supervisor.h"
+#include "firmware/control/types/guide.h"
 #include "firmware/model/clearance.h"
 
 namespace sidestep {
@@ -75,7 +75,7 @@ struct Report {
   double beta = 0.0;
   double damping = 0.0;
   double shield_correction_radps = 0.0;
-  Outlook outlook = Outlook::kDirect;
+  ForesightStatus foresight_status = ForesightStatus::kDirect;
   double guide_horizon_s = 0.0;  ///< until the guide's end; 0 without one
   const Guide* guide = nullptr;  ///< followed in this cycle, of the inputs
   const char* message = "";

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/control/law.h"
+#include "firmware/control/types/law.h"
 
 namespace sidestep {
 
@@ -11,6 +11,6 @@ JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limi
 /// Our own law before the shield: the tool straight to the target with the target's own velocity in it, through a
 /// damped inverse, and `preferred_radps`, n x 1, in what that leaves free. It knows nothing of obstacles: the shield
 /// keeps clear, and repulsion in the wish only costs arrivals (measured by host/campaign).
-Wish sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps);
+NominalCommand sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps);
 
 }  // namespace sidestep

@@ -34,7 +34,7 @@ void Foresight::judge(const Snapshot& now) {
   if (is_fine(expected_)) {
     searching_ = 0;
     candidate_ = Guide{};
-    if (guide_.knots == 0) guide_.outlook = Outlook::kDirect;
+    if (guide_.knots == 0) guide_.foresight_status = ForesightStatus::kDirect;
   }
 }
 
@@ -50,7 +50,8 @@ void Foresight::search(const Snapshot& now) {
   candidate_ = planner_.to_target(now);
   if (candidate_.knots > 0) return;
   if (expected_.collides) candidate_ = planner_.to_safety(now);
-  if (++searching_ > kInVain && guide_.knots == 0 && !expected_.arrives) guide_.outlook = Outlook::kWaiting;
+  if (++searching_ > kInVain && guide_.knots == 0 && !expected_.arrives)
+    guide_.foresight_status = ForesightStatus::kWaiting;
 }
 
 const Guide& Foresight::think(const Snapshot& now) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/foresight/goal_posture.h"
+#include "firmware/foresight/inverse_kinematics.h"
 #include "firmware/foresight/rollout.h"
 #include "firmware/model/prediction.h"
 
@@ -22,7 +22,7 @@ double range(double limit_rad, double otherwise_rad) {
 
 }  // namespace
 
-double Dice::uniform(double lower, double upper) {
+double SplitMix64::uniform(double lower, double upper) {
   state_ += 0x9e3779b97f4a7c15ULL;
   uint64_t z = state_;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -31,12 +31,12 @@ double Dice::uniform(double lower, double upper) {
   return lower + (upper - lower) * static_cast<double>(z >> 11) * 0x1.0p-53;
 }
 
-JointVector Planner::random_posture(const JointVector& around_rad, double reach_rad) {
+JointVector Planner::random_configuration(const JointVector& around_rad, double reach_rad) {
   const JointLimits& limits = model_.arm.limits;
   JointVector q_rad = around_rad;
   for (Eigen::Index i = 0; i < q_rad.size(); ++i)
-    q_rad[i] = dice_.uniform(std::max(range(limits.lower_rad[i], -M_PI), q_rad[i] - reach_rad),
-                             std::min(range(limits.upper_rad[i], M_PI), q_rad[i] + reach_rad));
+    q_rad[i] = random_.uniform(std::max(range(limits.lower_rad[i], -M_PI), q_rad[i] - reach_rad),
+                               std::min(range(limits.upper_rad[i], M_PI), q_rad[i] + reach_rad));
   return q_rad;
 }
 
@@ -56,14 +56,14 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const ForesightSettings& settings = model_.settings.foresight;
   // What is nearer already may stay so near, but no nearer.
   const double enough_m = settings.clearance_m;
-  const Posture at_start = forward(model_.arm, guide.position_rad[0]);
+  const LinkPoses at_start = forward_kinematics(model_.arm, guide.position_rad[0]);
   const double start_m =
-      clearance_after(model_.arm, at_start, from.movers.obstacles.data(), from.movers.count, 0.0, enough_m);
+      clearance_after(model_.arm, at_start, from.nearby.obstacles.data(), from.nearby.count, 0.0, enough_m);
   const double wanted_m = std::min(enough_m, start_m - 0.005);
   for (double after_s = 0.0; after_s <= settings.horizon_s; after_s += kCheckEvery_s) {
-    const Posture posture = forward(model_.arm, point_of(guide, from.now_s + after_s).position_rad);
+    const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad);
     const double clear_m =
-        clearance_after(model_.arm, posture, from.movers.obstacles.data(), from.movers.count, after_s, enough_m);
+        clearance_after(model_.arm, poses, from.nearby.obstacles.data(), from.nearby.count, after_s, enough_m);
     if (clear_m < (after_s < 0.5 ? wanted_m : enough_m)) return false;
   }
   return true;
@@ -71,20 +71,20 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
 
 Guide Planner::to_target(const Snapshot& from) {
   const double horizon_s = model_.settings.foresight.horizon_s;
-  const Target target = target_after(from.target, kTargetBelieved_s);
+  const Target target = predicted_target(from.target, kTargetBelieved_s);
   Guide best;
   for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
-    const double kind = dice_.uniform(0.0, 1.0);
-    JointVector goal_rad = random_posture(from.arm.position_rad, kind < 0.4 ? 0.8 : 2.0 * M_PI);
-    if (!reach(model_.arm, target, goal_rad)) continue;
+    const double kind = random_.uniform(0.0, 1.0);
+    JointVector goal_rad = random_configuration(from.arm.position_rad, kind < 0.4 ? 0.8 : 2.0 * M_PI);
+    if (!solve_ik(model_.arm, target, goal_rad)) continue;
 
     Guide guide;
-    guide.outlook = Outlook::kGuided;
+    guide.foresight_status = ForesightStatus::kGuided;
     guide.knots = 1;
     guide.time_s[0] = from.now_s;
     guide.position_rad[0] = from.arm.position_rad;
-    if (dice_.uniform(0.0, 1.0) < 0.25) guide.time_s[0] += dice_.uniform(0.0, kLongestPause_s);
-    if (dice_.uniform(0.0, 1.0) < 0.3) append(guide, random_posture(from.arm.position_rad, 1.5));
+    if (random_.uniform(0.0, 1.0) < 0.25) guide.time_s[0] += random_.uniform(0.0, kLongestPause_s);
+    if (random_.uniform(0.0, 1.0) < 0.3) append(guide, random_configuration(from.arm.position_rad, 1.5));
     append(guide, goal_rad);
     if (guide.end_s() > from.now_s + horizon_s - 1.0) continue;
     if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
@@ -96,11 +96,11 @@ Guide Planner::to_target(const Snapshot& from) {
 Guide Planner::to_safety(const Snapshot& from) {
   for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
     Guide guide;
-    guide.outlook = Outlook::kWaiting;
+    guide.foresight_status = ForesightStatus::kWaiting;
     guide.knots = 1;
     guide.time_s[0] = from.now_s;
     guide.position_rad[0] = from.arm.position_rad;
-    append(guide, random_posture(from.arm.position_rad, 1.0));
+    append(guide, random_configuration(from.arm.position_rad, 1.0));
     if (is_clear(from, guide)) return guide;
   }
   return {};

@@ -5,9 +5,9 @@
 namespace sidestep {
 
 /// Random numbers that are the same everywhere (SplitMix64).
-class Dice {
+class SplitMix64 {
  public:
-  explicit Dice(int64_t seed) : state_(static_cast<uint64_t>(seed)) {}
+  explicit SplitMix64(int64_t seed) : state_(static_cast<uint64_t>(seed)) {}
   double uniform(double lower, double upper);
 
  private:
@@ -18,10 +18,10 @@ class Dice {
 /// the target and can stay there, or by way of another one.
 class Planner {
  public:
-  explicit Planner(const Model& model) : model_(model), dice_(model.settings.foresight.seed) {}
+  explicit Planner(const Model& model) : model_(model), random_(model.settings.foresight.seed) {}
 
   /// Forgets what was thrown so far.
-  void start_over() { dice_ = Dice(model_.settings.foresight.seed); }
+  void start_over() { random_ = SplitMix64(model_.settings.foresight.seed); }
 
   /// Tries a few random ways and returns the one that arrives soonest; without knots when all fail. Bounded.
   Guide to_target(const Snapshot& from);
@@ -30,12 +30,12 @@ class Planner {
   Guide to_safety(const Snapshot& from);
 
  private:
-  JointVector random_posture(const JointVector& around_rad, double reach_rad);
+  JointVector random_configuration(const JointVector& around_rad, double reach_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;
   void append(Guide& guide, const JointVector& q_rad) const;
 
   const Model& model_;
-  Dice dice_;
+  SplitMix64 random_;
 };
 
 }  // namespace sidestep

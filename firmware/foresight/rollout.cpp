@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/control/present.h"
+#include "firmware/control/extrapolation.h"
 
 #include "firmware/model/prediction.h"
 
@@ -21,24 +21,24 @@ constexpr double kCollision_s = 20.0;
 constexpr double kTooNear_m = 0.01;
 
 void advance(ObstacleSet& set, double dt_s) {
-  for (int i = 0; i < set.count; ++i) set.obstacles[i] = moved(set.obstacles[i], dt_s);
+  for (int i = 0; i < set.count; ++i) set.obstacles[i] = extrapolated(set.obstacles[i], dt_s);
 }
 
 }  // namespace
 
-Target target_after(const Target& target, double after_s) {
+Target predicted_target(const Target& target, double after_s) {
   const double believed_s = std::min(after_s, kTargetBelieved_s);
-  Target then = moved_on(target, believed_s);
+  Target then = extrapolated(target, believed_s);
   if (after_s < kTargetBelieved_s) return then;
   then.velocity_mps.setZero();
   then.angular_velocity_radps.setZero();
   return then;
 }
 
-bool is_at(const Posture& posture, const Target& target) {
-  if ((target.position_m - posture.tool_position).norm() > kArrived_m) return false;
+bool is_at(const LinkPoses& poses, const Target& target) {
+  if ((target.position_m - poses.tool_position).norm() > kArrived_m) return false;
   if (!target.tracks_orientation) return true;
-  return Quaternion(posture.tool_rotation).angularDistance(target.orientation) <= kArrived_rad;
+  return Quaternion(poses.tool_rotation).angularDistance(target.orientation) <= kArrived_rad;
 }
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
@@ -50,8 +50,8 @@ Rollout::Rollout(const Model& model) : coarse_(model) {
 Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   const double period_s = coarse_.settings.period_s();
   const int cycles = static_cast<int>(coarse_.settings.foresight.horizon_s / period_s);
-  obstacles_.count = from.movers.count;
-  std::copy_n(from.movers.obstacles.begin(), from.movers.count, obstacles_.obstacles.begin());
+  obstacles_.count = from.nearby.count;
+  std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
   arm.utime = state.arm_utime = 0;  // any clock will do
@@ -59,7 +59,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {
     const double after_s = cycle * period_s, now_s = from.now_s + after_s;
-    const Target target = target_after(from.target, after_s);
+    const Target target = predicted_target(from.target, after_s);
     advance(obstacles_, period_s);
     arm.utime += static_cast<int64_t>(period_s * 1e6);
     const int64_t count = state.arm_count + 1;
@@ -70,10 +70,10 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     arm.position_rad = result.command.position_rad;
     arm.velocity_radps = result.command.velocity_radps;
 
-    const Posture posture = forward(coarse_.arm, arm.position_rad);
-    forecast.arrives = is_at(posture, target);
+    const LinkPoses poses = forward_kinematics(coarse_.arm, arm.position_rad);
+    forecast.arrives = is_at(poses, target);
     if (!forecast.arrives) forecast.cost_s += period_s;
-    least_m = std::min(least_m, clearance_after(coarse_.arm, posture, obstacles_.obstacles.data(), obstacles_.count,
+    least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, kTooNear_m));
   }
   forecast.collides = least_m < kTooNear_m;

@@ -29,9 +29,9 @@ class Rollout {
 constexpr double kTargetBelieved_s = 1.0;
 
 /// The target after a while.
-Target target_after(const Target& target, double after_s);
+Target predicted_target(const Target& target, double after_s);
 
 /// Whether the tool is where the target asks for it.
-bool is_at(const Posture& posture, const Target& target);
+bool is_at(const LinkPoses& poses, const Target& target);
 
 }  // namespace sidestep

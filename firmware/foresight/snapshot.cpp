@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/control/present.h"
+#include "firmware/control/extrapolation.h"
 
 namespace sidestep {
 namespace {
@@ -17,25 +17,25 @@ double nearest_to_base(const Obstacle& obstacle, double horizon_s) {
 /// Keeps the obstacles that come nearest.
 class Nearest {
  public:
-  Nearest(Movers& movers, double horizon_s) : movers_(movers), horizon_s_(horizon_s) { movers_.count = 0; }
+  Nearest(NearbyObstacles& nearby, double horizon_s) : nearby_(nearby), horizon_s_(horizon_s) { nearby_.count = 0; }
 
   void consider(const Obstacle& obstacle) {
     const double distance_m = nearest_to_base(obstacle, horizon_s_);
-    if (movers_.count < kMaxMovers) {
-      distance_m_[movers_.count] = distance_m;
-      movers_.obstacles[movers_.count++] = obstacle;
+    if (nearby_.count < kMaxNearbyObstacles) {
+      distance_m_[nearby_.count] = distance_m;
+      nearby_.obstacles[nearby_.count++] = obstacle;
       return;
     }
     const auto farthest = std::max_element(distance_m_.begin(), distance_m_.end());
     if (distance_m >= *farthest) return;
     *farthest = distance_m;
-    movers_.obstacles[farthest - distance_m_.begin()] = obstacle;
+    nearby_.obstacles[farthest - distance_m_.begin()] = obstacle;
   }
 
  private:
-  Movers& movers_;
+  NearbyObstacles& nearby_;
   double horizon_s_;
-  std::array<double, kMaxMovers> distance_m_{};
+  std::array<double, kMaxNearbyObstacles> distance_m_{};
 };
 
 }  // namespace
@@ -46,11 +46,11 @@ void look(const Model& model, const Inputs& inputs, const State& state, double n
   snapshot.now_s = now_s;
   snapshot.state = state;
   snapshot.arm = *inputs.arm.message;
-  snapshot.target = present(inputs.target, now_s);
+  snapshot.target = extrapolated(inputs.target, now_s);
 
-  Nearest nearest(snapshot.movers, model.settings.foresight.horizon_s);
+  Nearest nearest(snapshot.nearby, model.settings.foresight.horizon_s);
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);
-  for (int i = 0; i < view.count(); ++i) nearest.consider(view.present(i));
+  for (int i = 0; i < view.count(); ++i) nearest.consider(view.extrapolated(i));
 }
 
 }  // namespace sidestep

@@ -4,12 +4,12 @@
 
 namespace sidestep {
 
-constexpr int kMaxMovers = 64;
+constexpr int kMaxNearbyObstacles = 64;
 
 /// The obstacles that may matter in the near future, as they are at one instant.
-struct Movers {
+struct NearbyObstacles {
   int count = 0;
-  std::array<Obstacle, kMaxMovers> obstacles;
+  std::array<Obstacle, kMaxNearbyObstacles> obstacles;
 };
 
 /// The world as one cycle saw it: what foresight thinks about.
@@ -19,7 +19,7 @@ struct Snapshot {
   State state;  ///< after the cycle
   ArmState arm;
   Target target;
-  Movers movers;
+  NearbyObstacles nearby;
 };
 
 /// What foresight needs of the inputs of a cycle and of the state it led to. Of more than kMaxMovers obstacles those

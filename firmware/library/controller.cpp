@@ -2,9 +2,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/io/adviser.h"
-#include "firmware/io/config.h"
-#include "firmware/io/reported.h"
+#include "firmware/control/reported.h"
+#include "firmware/foresight/foresight_thread.h"
+#include "firmware/io/config/config.h"
 #include "firmware/library/sidestep.h"
 
 namespace sidestep {
@@ -80,8 +80,8 @@ Model model_of(const std::string& config_file, const Overrides& overrides, Contr
 struct Controller::Inside {
   Inside(Model the_model, Controller::Foresight foresight)
       : model(std::move(the_model)),
-        adviser(model, foresight == Foresight::kWithinStep),
-        old_places(old_places_of(model.settings)) {}
+        foresight_thread(model, foresight == Foresight::kWithinStep),
+        obstacle_memory(obstacle_memory_of(model.settings)) {}
 
   /// The newest of a kind, and a place for the next, which counts only when it is found good.
   template <typename Message>
@@ -99,8 +99,8 @@ struct Controller::Inside {
   };
 
   Model model;
-  Adviser adviser;
-  OldPlaces old_places;
+  ForesightThread foresight_thread;
+  ObstacleMemory obstacle_memory;
   State state;
   Newest<sidestep::ArmState> arm;
   Newest<sidestep::Target> target;
@@ -141,7 +141,7 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
     sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
     if (!complete(static_cast<sidestep::Shape>(obstacles[i].shape), obstacle)) return false;
   }
-  inside_->old_places.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
+  inside_->obstacle_memory.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
   newest.take_draft(now_s);
   return true;
 }
@@ -158,10 +158,10 @@ Controller::Result Controller::step(const ArmState& arm, double now_s) {
 Controller::Result Controller::step(double now_s) {
   Inside& in = *inside_;
   Inputs inputs{in.arm.latest(), in.target.latest(), in.obstacles.latest(), 0, in.stopping};
-  inputs.guide = in.adviser.latest();
+  inputs.guide = in.foresight_thread.latest();
   const sidestep::Result result = sidestep::step(in.model, in.state, inputs, now_s);
   in.state = result.next;
-  in.adviser.tell(inputs, in.state, now_s);
+  in.foresight_thread.tell(inputs, in.state, now_s);
   return result_of(result);
 }
 

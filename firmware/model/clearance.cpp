@@ -26,9 +26,9 @@ struct Links {
   Vector3 upper = -lower;
   double radius_m = 0.0;  // the largest of the shapes
 
-  Links(const Arm& arm, const Posture& posture) {
+  Links(const Arm& arm, const LinkPoses& poses) {
     for (const LinkShape& shape : arm.shapes) {
-      const Capsule capsule = placed(posture, shape);
+      const Capsule capsule = transformed(poses, shape);
       const Vector3 axis = capsule.end - capsule.start;
       const double length2_m2 = axis.squaredNorm();
       shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, shape.body > 0});
@@ -42,7 +42,7 @@ struct Links {
 };
 
 /// How pressing a pair is: the nearer now or at its approach, the more.
-double pressing_m(const Proximity& now, const Approach& approach) {
+double pressing_m(const Proximity& now, const ClosestApproach& approach) {
   return std::min(now.distance_m, approach.distance_m);
 }
 
@@ -57,9 +57,9 @@ double square(double x) {
 /// Gathers a Clearance, obstacle by obstacle. Most pairs turn out not to matter by one comparison of squares.
 class Gatherer {
  public:
-  Gatherer(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach, Clearance& clearance)
+  Gatherer(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach, Clearance& clearance)
       : arm_(arm),
-        links_(arm, posture),
+        links_(arm, poses),
         view_(view),
         horizon_s_(reach.horizon_s),
         limit_m_(reach.range_m),
@@ -92,8 +92,8 @@ class Gatherer {
       if (distance_m > reach_m(link, radii_m, closing_m)) continue;
       const Proximity now = proximity_of(link.capsule, radius_m, {centre - gap, centre}, -gap, distance_m);
       look_at(s, index, now, velocity_mps, travel_m, [&] {
-        if (closing_m == 0.0) return Approach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
-        return predict_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
+        if (closing_m == 0.0) return ClosestApproach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
+        return predict_closest_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
       });
       reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
     }
@@ -108,14 +108,14 @@ class Gatherer {
     const double radii_m = links_.radius_m + reported.radius_m + growth_m;
     if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
 
-    const Obstacle present = view_.present(index);
+    const Obstacle present = view_.extrapolated(index);
     for (int s = 0; s < links_.shapes.size(); ++s) {
       const Capsule& link = links_.shapes[s].capsule;
       const NearestPoints points = nearest_on_axes(link, present.capsule);
       if ((points.a - points.b).squaredNorm() > square(reach_m(radii_m, core_m, travel_m))) continue;
       const Proximity now = measure_pair(link, present);
       look_at(s, index, now, velocity_at(present, now.on_obstacle), travel_m,
-              [&] { return predict_approach(link, present, now, horizon_s_); });
+              [&] { return predict_closest_approach(link, present, now, horizon_s_); });
     }
   }
 
@@ -140,7 +140,7 @@ class Gatherer {
     if (arm_.shapes[shape].body == 0) return;
     if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
     if (now.distance_m - travel_m > limit_m_) return;
-    const Approach approach = predict();
+    const ClosestApproach approach = predict();
     if (pressing_m(now, approach) < limit_m_) keep(now, approach, velocity_mps);
   }
 
@@ -157,7 +157,7 @@ class Gatherer {
   }
 
   /// As soon as the list is full, only what is more pressing than the least pressing there comes in, for that one.
-  void keep(const Proximity& now, const Approach& approach, const Vector3& velocity_mps) {
+  void keep(const Proximity& now, const ClosestApproach& approach, const Vector3& velocity_mps) {
     auto& near = clearance_.near;
     if (near.is_full())
       near[least_] = {now, approach, velocity_mps};
@@ -180,15 +180,15 @@ class Gatherer {
 
 }  // namespace
 
-Obstacle ObstacleView::present(int index, double later_s) const {
-  Obstacle obstacle = moved(at(index), age_s + later_s);
+Obstacle ObstacleView::extrapolated(int index, double later_s) const {
+  Obstacle obstacle = sidestep::extrapolated(at(index), age_s + later_s);
   obstacle.capsule.radius_m += growth_of(index);
   return obstacle;
 }
 
-Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach) {
+Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
-  Gatherer gatherer(arm, posture, view, reach, clearance);
+  Gatherer gatherer(arm, poses, view, reach, clearance);
   for (int o = 0; o < view.reported(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
   for (int o = view.reported(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "firmware/model/bounded_list.h"
+#include "firmware/base/bounded_list.h"
 #include "firmware/model/kinematics.h"
 #include "firmware/model/proximity.h"
 
@@ -11,7 +11,7 @@ namespace sidestep {
 /// A pair that matters now or soon.
 struct NearPair {
   Proximity now;
-  Approach approach;
+  ClosestApproach approach;
   Vector3 velocity_mps = Vector3::Zero();  ///< of the obstacle's nearest point
 };
 
@@ -40,7 +40,7 @@ struct ObstacleView {
   }
   double growth_of(int index) const { return index < reported() ? growth_m : 0.0; }
   /// Where it is later_s from now, and grown.
-  Obstacle present(int index, double later_s = 0.0) const;
+  Obstacle extrapolated(int index, double later_s = 0.0) const;
 };
 
 /// Which pairs are collected: those nearer than range_m now, or so near within horizon_s at constant velocity.
@@ -51,6 +51,6 @@ struct Reach {
 
 /// Distances of all link shapes to all obstacles, these moved forward to the present by their velocities. Work is
 /// bounded by shapes x obstacles; obstacles that stay far cost one comparison each.
-Clearance measure_clearance(const Arm& arm, const Posture& posture, const ObstacleView& view, const Reach& reach);
+Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach);
 
 }  // namespace sidestep

@@ -2,17 +2,18 @@
 
 namespace sidestep {
 
-JointAxes::JointAxes(const Posture& posture) : joints_(posture.joints) {
+JointAxes::JointAxes(const LinkPoses& poses) : joints_(poses.joints) {
   for (int i = 0; i < joints_; ++i) {
-    const Vector3 direction = posture.rotation[i + 1].col(2);
-    lines_[i] = {direction, posture.origin[i + 1].cross(direction)};
+    const Vector3 direction = poses.rotation[i + 1].col(2);
+    lines_[i] = {direction, poses.origin[i + 1].cross(direction)};
   }
 }
 
 JointVector JointAxes::row(int body, const Vector3& p_base, const Vector3& direction) const {
-  const Vector3 moment = p_base.cross(direction);
+  const Vector3 arguments = p_base.cross(direction);
   JointVector row(joints_);
-  for (int i = 0; i < body; ++i) row.coeffRef(i) = lines_[i].direction.dot(moment) + lines_[i].moment.dot(direction);
+  for (int i = 0; i < body; ++i)
+    row.coeffRef(i) = lines_[i].direction.dot(arguments) + lines_[i].arguments.dot(direction);
   for (int i = body; i < joints_; ++i) row.coeffRef(i) = 0.0;  // joints behind the body
   return row;
 }

@@ -8,7 +8,7 @@ namespace sidestep {
 /// joint.
 class JointAxes {
  public:
-  explicit JointAxes(const Posture& posture);
+  explicit JointAxes(const LinkPoses& poses);
 
   /// How fast a point of a body (m) moves along a unit direction over the joint velocities: point_jacobian()^T
   /// direction, n x 1; it is the moment of the line through the point about each axis.
@@ -17,7 +17,7 @@ class JointAxes {
  private:
   struct Line {
     Vector3 direction;
-    Vector3 moment;  ///< of the line about the origin, m
+    Vector3 arguments;  ///< of the line about the origin, m
   };
   int joints_;
   std::array<Line, kMaxJoints> lines_;

@@ -2,13 +2,13 @@
 
 namespace sidestep {
 
-Obstacle link_obstacle(const Posture& posture, const LinkShape& shape, const JointVector& velocity_radps) {
+Obstacle link_obstacle(const LinkPoses& poses, const LinkShape& shape, const JointVector& velocity_radps) {
   Obstacle link;
-  link.capsule = placed(posture, shape);
+  link.capsule = transformed(poses, shape);
   const Vector3 centre = 0.5 * (link.capsule.start + link.capsule.end);
-  link.velocity_mps = point_jacobian(posture, shape.body, centre) * velocity_radps;
+  link.velocity_mps = point_jacobian(poses, shape.body, centre) * velocity_radps;
   for (int joint = 1; joint <= shape.body; ++joint)
-    link.angular_velocity_radps += posture.rotation[static_cast<size_t>(joint)].col(2) * velocity_radps[joint - 1];
+    link.angular_velocity_radps += poses.rotation[static_cast<size_t>(joint)].col(2) * velocity_radps[joint - 1];
   return link;
 }
 

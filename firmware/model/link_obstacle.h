@@ -7,6 +7,6 @@ namespace sidestep {
 
 /// A shape of the arm as others have to keep clear of it: where it is and how it moves, in the base frame.
 /// velocity_radps: n x 1, of the joints.
-Obstacle link_obstacle(const Posture& posture, const LinkShape& shape, const JointVector& velocity_radps);
+Obstacle link_obstacle(const LinkPoses& poses, const LinkShape& shape, const JointVector& velocity_radps);
 
 }  // namespace sidestep

@@ -51,7 +51,7 @@ Box box_of(const Obstacle& obstacle) {
   return box;
 }
 
-double rounding_m(const Obstacle& obstacle) {
+double inflation_m(const Obstacle& obstacle) {
   return obstacle.capsule.radius_m - std::hypot(obstacle.half_width_m.norm(), obstacle.half_height_m);
 }
 
@@ -59,7 +59,7 @@ Vector3 velocity_at(const Obstacle& obstacle, const Vector3& point) {
   return obstacle.velocity_mps + obstacle.angular_velocity_radps.cross(point - obstacle.capsule.centre());
 }
 
-Obstacle moved(const Obstacle& obstacle, double dt_s) {
+Obstacle extrapolated(const Obstacle& obstacle, double dt_s) {
   Obstacle later = obstacle;
   Capsule& capsule = later.capsule;
   const Vector3 shift = obstacle.velocity_mps * dt_s;

@@ -23,7 +23,7 @@ struct Obstacle {
 /// The full set of obstacles at one instant. Large: lives in a mailbox or on the heap, never on a stack.
 struct ObstacleSet {
   int count = 0;
-  int old_places = 0;  ///< the last of them: not of the set, but where some have just been
+  int obstacle_memory = 0;  ///< the last of them: not of the set, but where some have just been
   std::array<Obstacle, kMaxObstacles> obstacles;
 };
 
@@ -39,12 +39,12 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 Box box_of(const Obstacle& obstacle);
 
 /// All within this of the box counts as the obstacle, m: by how much its capsule has grown.
-double rounding_m(const Obstacle& obstacle);
+double inflation_m(const Obstacle& obstacle);
 
 /// Velocity of the obstacle's material at a point, m/s.
 Vector3 velocity_at(const Obstacle& obstacle, const Vector3& point);
 
 /// The obstacle dt_s later, at constant linear and angular velocity.
-Obstacle moved(const Obstacle& obstacle, double dt_s);
+Obstacle extrapolated(const Obstacle& obstacle, double dt_s);
 
 }  // namespace sidestep

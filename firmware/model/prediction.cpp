@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/model/bounded_list.h"
+#include "firmware/base/bounded_list.h"
 #include "firmware/model/proximity.h"
 
 namespace sidestep {
@@ -17,11 +17,11 @@ struct Link {
 using Links = BoundedList<Link, kMaxShapes>;
 
 /// Those that can move.
-Links place_links(const Arm& arm, const Posture& posture) {
+Links place_links(const Arm& arm, const LinkPoses& poses) {
   Links links;
   for (const LinkShape& shape : arm.shapes) {
     if (shape.body == 0) continue;
-    const Capsule capsule = placed(posture, shape);
+    const Capsule capsule = transformed(poses, shape);
     links.add({capsule, capsule.centre(), shape.capsule_body.extent_m()});
   }
   return links;
@@ -54,16 +54,16 @@ double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double le
 
 }  // namespace
 
-double clearance_after(const Arm& arm, const Posture& posture, const Obstacle* obstacles, int count, double after_s,
+double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
                        double enough_m) {
-  const Links links = place_links(arm, posture);
+  const Links links = place_links(arm, poses);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];
     const Capsule& capsule = obstacle.capsule;
     least_m = capsule.is_sphere() ? nearest_to_sphere_m(links, capsule.start + obstacle.velocity_mps * after_s,
                                                         capsule.radius_m, least_m)
-                                  : nearest_to_long_m(links, moved(obstacle, after_s), least_m);
+                                  : nearest_to_long_m(links, extrapolated(obstacle, after_s), least_m);
   }
   return least_m;
 }

@@ -11,10 +11,10 @@ class BoxOnItsWay {
       : link_(link),
         box_(box_of(obstacle)),
         velocity_mps_(velocity_at(obstacle, now.on_obstacle)),
-        radii_m_(link.radius_m + rounding_m(obstacle)),
+        radii_m_(link.radius_m + inflation_m(obstacle)),
         least_{0.0, now.distance_m, std::numeric_limits<double>::infinity(), now.on_arm, now.normal} {}
 
-  Approach closest(const Proximity& now, double horizon_s) {
+  ClosestApproach closest(const Proximity& now, double horizon_s) {
     Tangent low{0.0, now.distance_m, -now.normal.dot(velocity_mps_)};
     if (low.slope_mps >= 0.0) return least_;
     Tangent high = look(horizon_s);
@@ -47,14 +47,14 @@ class BoxOnItsWay {
   const Box box_;
   const Vector3 velocity_mps_;
   const double radii_m_;
-  Approach least_;
+  ClosestApproach least_;
 };
 
 Proximity measure_box(const Capsule& link, const Obstacle& obstacle) {
   const BoxGap gap = gap_to_box(link.start, link.end, box_of(obstacle));
   Proximity pair;
   pair.axis_distance_m = gap.distance_m;
-  pair.distance_m = gap.distance_m - link.radius_m - rounding_m(obstacle);
+  pair.distance_m = gap.distance_m - link.radius_m - inflation_m(obstacle);
   pair.on_arm = gap.on_segment;
   pair.on_obstacle = gap.on_box;
   pair.normal = gap.normal;
@@ -80,17 +80,18 @@ double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double 
   return will_do ? to_capsule_m : measure_box(link, obstacle).distance_m;
 }
 
-Approach predict_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double horizon_s) {
+ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
+                                         double horizon_s) {
   if (obstacle.is_box()) return BoxOnItsWay(link, obstacle, now).closest(now, horizon_s);
-  return predict_approach(link, obstacle.capsule.radius_m, now.on_obstacle, velocity_at(obstacle, now.on_obstacle),
-                          horizon_s);
+  return predict_closest_approach(link, obstacle.capsule.radius_m, now.on_obstacle,
+                                  velocity_at(obstacle, now.on_obstacle), horizon_s);
 }
 
-Approach predict_approach(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
-                          double horizon_s) {
+ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, const Vector3& point,
+                                         const Vector3& velocity_mps, double horizon_s) {
   const Vector3 path = velocity_mps * horizon_s;
   const NearestPoints points = nearest_on_axes(link, {point, point + path, 0.0});
-  Approach approach;
+  ClosestApproach approach;
   approach.on_arm = points.a;
   const double length2 = path.squaredNorm();
   approach.time_s = length2 > 0.0 ? horizon_s * path.dot(points.b - point) / length2 : 0.0;

@@ -18,7 +18,7 @@ struct Proximity {
 };
 
 /// The closest that a moving obstacle will come to a link that stays where it is.
-struct Approach {
+struct ClosestApproach {
   double time_s = 0.0;           ///< from now; 0 when it is not coming closer
   double distance_m = 0.0;       ///< between surfaces then
   double axis_distance_m = 0.0;  ///< between axes then; infinite for a box
@@ -54,10 +54,11 @@ double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double 
 
 /// The closest approach within horizon_s at the velocity of the point that is nearest now: of that point, or of a whole
 /// box.
-Approach predict_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double horizon_s);
+ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
+                                         double horizon_s);
 
 /// The same of a ball around a point.
-Approach predict_approach(const Capsule& link, double radius_m, const Vector3& point, const Vector3& velocity_mps,
-                          double horizon_s);
+ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, const Vector3& point,
+                                         const Vector3& velocity_mps, double horizon_s);
 
 }  // namespace sidestep

@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "firmware/control/settings.h"
+#include "firmware/control/types/settings.h"
 #include "firmware/model/arm.h"
 #include "firmware/model/kinematics.h"
-#include "firmware/model/self_pairs.h"
+#include "firmware/model/load/self_pairs.h"
 
 namespace sidestep {
 namespace {
@@ -90,10 +90,9 @@ void print_poses(const Arm& arm) {
     for (double& angle_rad : q_rad) stream >> angle_rad;
     if (!stream || stream >> more)
       throw std::runtime_error(fmt::format("standard input, line {}: not {} joint positions", number, arm.joints));
-    const Posture posture = forward(arm, q_rad);
-    const Matrix3& r = posture.tool_rotation;
-    fmt::print("{:.17g} {:.17g} {:.17g}", posture.tool_position.x(), posture.tool_position.y(),
-               posture.tool_position.z());
+    const LinkPoses poses = forward_kinematics(arm, q_rad);
+    const Matrix3& r = poses.tool_rotation;
+    fmt::print("{:.17g} {:.17g} {:.17g}", poses.tool_position.x(), poses.tool_position.y(), poses.tool_position.z());
     for (int row = 0; row < 3; ++row) fmt::print(" {:.17g} {:.17g} {:.17g}", r(row, 0), r(row, 1), r(row, 2));
     fmt::print("\n");
   }

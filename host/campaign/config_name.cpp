@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "firmware/io/find_file.h"
+#include "firmware/base/find_file.h"
 
 namespace sidestep::campaign {
 

@@ -35,11 +35,11 @@ bool is_lwa3(const Arm& arm, const JudgeArm& lwa3) {
   Joints q_rad(7);
   q_rad << 0.3, -0.5, 0.7, 0.9, -1.1, 0.6, 0.2;
   if (arm.joints != q_rad.size()) return false;
-  const Posture posture = forward(arm, q_rad);
+  const LinkPoses poses = forward_kinematics(arm, q_rad);
   const std::vector<Vector3> corners = lwa3.pose(q_rad).corners;
-  if (!same(posture.tool_position, corners.back()) || arm.shapes.size() + 1 != corners.size()) return false;
+  if (!same(poses.tool_position, corners.back()) || arm.shapes.size() + 1 != corners.size()) return false;
   for (size_t i = 0; i < arm.shapes.size(); ++i)
-    if (!is_link(placed(posture, arm.shapes[i]), corners[i], corners[i + 1])) return false;
+    if (!is_link(transformed(poses, arm.shapes[i]), corners[i], corners[i + 1])) return false;
   return std::any_of(families().begin(), families().end(),
                      [&](const Family& family) { return same_limits(arm.limits, lwa3.limits(family)); });
 }

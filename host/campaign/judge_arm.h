@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 #include "host/sim/truth.h"
 
 namespace sidestep::campaign {

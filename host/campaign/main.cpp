@@ -6,11 +6,11 @@
 #include <fstream>
 #include <thread>
 
-#include "firmware/io/config.h"
-#include "firmware/io/find_file.h"
+#include "firmware/base/find_file.h"
+#include "firmware/io/config/config.h"
 #include "host/campaign/config_name.h"
-#include "host/campaign/replay.h"
 #include "host/campaign/runner.h"
+#include "host/campaign/scene_export.h"
 #include "host/campaign/table.h"
 
 namespace {

@@ -38,8 +38,8 @@ ArmPose UrdfArm::pose(const Joints& q_rad) const {
   }
   pose.corners.push_back(truth->tool_m());
   pose.truth = truth;
-  const Posture posture = forward(model_.arm, q_rad);
-  for (const LinkShape& shape : model_.arm.shapes) pose.capsules.push_back(placed(posture, shape));
+  const LinkPoses poses = forward_kinematics(model_.arm, q_rad);
+  for (const LinkShape& shape : model_.arm.shapes) pose.capsules.push_back(transformed(poses, shape));
   return pose;
 }
 

@@ -7,7 +7,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <queue>
 
-#include "host/relay/mischief.h"
+#include "host/relay/impairment.h"
 
 namespace {
 
@@ -26,8 +26,8 @@ struct Later {
 /// One way from one network to another.
 class Relay {
  public:
-  Relay(const std::string& from, const std::string& to, Mischief mischief)
-      : from_(from), to_(to), mischief_(std::move(mischief)) {
+  Relay(const std::string& from, const std::string& to, Impairment impairment)
+      : from_(from), to_(to), mischief_(std::move(impairment)) {
     if (!from_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", from));
     if (!to_.good()) throw std::runtime_error(fmt::format("LCM: cannot use the network '{}'", to));
     // The C++ binding does not say when this fails, for example because another program has the port.
@@ -66,7 +66,7 @@ class Relay {
   }
 
   lcm::LCM from_, to_;
-  Mischief mischief_;
+  Impairment mischief_;
   std::priority_queue<Delivery, std::vector<Delivery>, Later> waiting_;
 };
 
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
     if (from == to) throw std::runtime_error("--from and --to must be two networks");
     std::vector<Rule> parsed;
     for (const std::string& rule : rules) parsed.push_back(parse_rule(rule));
-    const Counts counts = Relay(from, to, Mischief(parsed, seed)).run();
+    const Counts counts = Relay(from, to, Impairment(parsed, seed)).run();
     fmt::print("relay: {} messages, {} dropped, {} corrupted, {} duplicated, {} reordered\n", counts.received,
                counts.dropped, counts.corrupted, counts.duplicated, counts.reordered);
   } catch (const std::exception& error) {

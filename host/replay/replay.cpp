@@ -8,9 +8,9 @@
 #include <sidestep/blackbox_t.hpp>
 #include <stdexcept>
 
-#include "firmware/io/admission.h"
-#include "firmware/io/blackbox_log.h"
-#include "firmware/io/mail.h"
+#include "firmware/io/blackbox/blackbox_log.h"
+#include "firmware/io/lcm/admission.h"
+#include "firmware/io/loop/received.h"
 
 namespace sidestep {
 namespace {
@@ -33,8 +33,8 @@ struct Held {
 /// For an admission that takes what was admitted already: nothing of it is out of order, and the log knows all old
 /// places.
 Settings once_more(Settings settings) {
-  settings.ages.arm_state_lost_s = settings.ages.target_s = settings.ages.obstacles_s = -1.0;
-  settings.ages.old_place_s = 0.0;
+  settings.timeouts.arm_state_lost_s = settings.timeouts.target_s = settings.timeouts.obstacles_s = -1.0;
+  settings.timeouts.coast_s = 0.0;
   return settings;
 }
 
@@ -53,8 +53,8 @@ class Rerun {
     if (event.channel == channels.arm_state) arm_.next = bytes_of(event);
     if (event.channel == channels.target) target_.next = bytes_of(event);
     if (event.channel == channels.obstacles) obstacles_->next = bytes_of(event);
-    if (event.channel == kOldPlacesChannel) old_places_ = bytes_of(event);
-    if (event.channel == kMomentChannel) return cycle(event);
+    if (event.channel == kRememberedChannel) obstacle_memory_ = bytes_of(event);
+    if (event.channel == kStepArgumentsChannel) return cycle(event);
     if (event.channel == channels.arm_command) compare(bytes_of(event));
     return "";
   }
@@ -67,21 +67,21 @@ class Rerun {
  private:
   std::string cycle(const lcm::LogEvent& event) {
     if (expected_) count_difference();
-    Moment moment;
-    if (!from_image(event.data, static_cast<size_t>(event.datalen), moment)) return "a cycle with a wrong checksum";
-    Inputs& inputs = moment.inputs;
+    StepArguments arguments;
+    if (!from_image(event.data, static_cast<size_t>(event.datalen), arguments)) return "a cycle with a wrong checksum";
+    Inputs& inputs = arguments.inputs;
     if (!put(arm_, inputs.arm) || !put(target_, inputs.target) || !put(*obstacles_, inputs.obstacles))
       return "a cycle whose messages are missing or not admitted";
-    if (!put_old_places(obstacles_->message)) return "old places that are none";
-    if (inputs.guide) inputs.guide = &moment.guide;
-    if (found_.cycles++ == 0) state_ = moment.state;
-    const Result result = step(config_.model, state_, inputs, moment.now_s);
+    if (!put_remembered(obstacles_->message)) return "old places that are none";
+    if (inputs.guide) inputs.guide = &arguments.guide;
+    if (found_.cycles++ == 0) state_ = arguments.state;
+    const Result result = step(config_.model, state_, inputs, arguments.now_s);
     state_ = result.next;
-    seq_ = moment.seq;
+    seq_ = arguments.seq;
     // Whether a command was published follows from the log: a lockstep loop answers outside a stream, too.
     answer_.clear();
     if (result.command.position_rad.size() == 0) return "";
-    const Packet packet = encoder_.encode(result.command, moment.utime, moment.seq);
+    const Packet packet = encoder_.encode(result.command, arguments.utime, arguments.seq);
     answer_ = Bytes(packet.bytes, packet.bytes + packet.size);
     if (result.commanding) expected_ = answer_;
     return "";
@@ -99,13 +99,14 @@ class Rerun {
   }
 
   /// Behind the set that they came with.
-  bool put_old_places(ObstacleSet& set) {
-    if (old_places_.empty()) return true;
-    const size_t count = old_places_.size() / sizeof(Obstacle), room = static_cast<size_t>(kMaxObstacles - set.count);
-    if (old_places_.size() % sizeof(Obstacle) != 0 || count > room) return false;
-    std::memcpy(static_cast<void*>(set.obstacles.data() + set.count), old_places_.data(), old_places_.size());
+  bool put_remembered(ObstacleSet& set) {
+    if (obstacle_memory_.empty()) return true;
+    const size_t count = obstacle_memory_.size() / sizeof(Obstacle),
+                 room = static_cast<size_t>(kMaxObstacles - set.count);
+    if (obstacle_memory_.size() % sizeof(Obstacle) != 0 || count > room) return false;
+    std::memcpy(static_cast<void*>(set.obstacles.data() + set.count), obstacle_memory_.data(), obstacle_memory_.size());
     set.count += static_cast<int>(count);
-    old_places_.clear();
+    obstacle_memory_.clear();
     return true;
   }
 
@@ -125,7 +126,7 @@ class Rerun {
   Held<ArmState> arm_;
   Held<Target> target_;
   std::unique_ptr<Held<ObstacleSet>> obstacles_;
-  Bytes old_places_;
+  Bytes obstacle_memory_;
   State state_;
   int64_t seq_ = 0;
   Bytes answer_;                   ///< the command of the cycle last run
@@ -149,7 +150,7 @@ BlackboxLog::BlackboxLog(const std::string& file) : content_(std::make_unique<Co
   const lcm::LogEvent* event = content_->log.readNextEvent();
   if (!event || event->channel != kBlackboxChannel || content_->header.decode(event->data, 0, event->datalen) < 0)
     content_->fail("is not the log of a blackbox");
-  if (content_->header.image_bytes != sizeof(MomentImage))
+  if (content_->header.image_bytes != sizeof(StepArgumentsImage))
     content_->fail("was written by another build of the controller");
 }
 

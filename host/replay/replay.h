@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 
 namespace sidestep {
 

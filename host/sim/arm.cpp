@@ -7,7 +7,7 @@
 #include <kdl_parser/kdl_parser.hpp>
 #include <stdexcept>
 
-#include "firmware/model/urdf_file.h"
+#include "firmware/model/load/urdf_file.h"
 
 namespace sidestep::sim {
 namespace {

@@ -31,7 +31,7 @@ class Arm {
  public:
   /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1
   /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere, box or readable
-  /// mesh (looked for on package_path, too: firmware/model/mesh.h).
+  /// mesh (looked for on package_path, too: firmware/model/load/mesh.h).
   Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
       const std::vector<std::string>& package_path = {});
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/io/yaml_document.h"
-#include "firmware/model/text_file.h"
+#include "firmware/base/text_file.h"
+#include "firmware/io/config/yaml_document.h"
 
 namespace sidestep::sim {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <atomic>
 
-#include "host/sim/bus.h"
 #include "host/sim/live.h"
 #include "host/sim/run.h"
+#include "host/sim/wire.h"
 
 namespace sidestep::sim {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "firmware/io/find_file.h"
+#include "firmware/base/find_file.h"
 #include "host/sim/fields.h"
 #include "host/sim/world_fields.h"
 

@@ -59,8 +59,8 @@ struct Scenario {
 
 /// Reads a scenario: of one arm, in its base frame, or of several, `arms`, that share duration, obstacles and
 /// expectations, in the world frame of their configurations. robot.urdf and config are looked for from the scenario's
-/// folder upwards (firmware/io/find_file.h). Throws std::runtime_error, one line naming file and key, for anything that
-/// is missing, unknown, of the wrong size, not finite or out of range.
+/// folder upwards (firmware/base/find_file.h). Throws std::runtime_error, one line naming file and key, for anything
+/// that is missing, unknown, of the wrong size, not finite or out of range.
 std::vector<Scenario> load_scenario(const std::string& file);
 
 }  // namespace sidestep::sim

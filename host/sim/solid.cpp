@@ -6,7 +6,7 @@
 #include <cmath>
 #include <variant>
 
-#include "firmware/model/mesh.h"
+#include "firmware/model/load/mesh.h"
 
 namespace sidestep::sim {
 

@@ -28,7 +28,7 @@ struct CentredMesh {
   Eigen::Vector3d centre_m;
 };
 
-/// Reads a mesh that a URDF names (firmware/model/mesh.h). Throws std::runtime_error, one line.
+/// Reads a mesh that a URDF names (firmware/model/load/mesh.h). Throws std::runtime_error, one line.
 CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file,
                             const std::vector<std::string>& package_path, const Eigen::Vector3d& scale);
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
-#include "tests/bench/bare.h"
+#include "tests/bench/baseline.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
@@ -127,8 +127,8 @@ Measured measure(const Scene& scene, const char* law) {
   loop.target_speaks = true;
   scatter(scene, loop);
   Measured measured;
-  bench::BarestCycle barest;
-  bench::BareCycle bare;
+  bench::BarestCycle distance_only;
+  bench::BareCycle baseline;
   for (int cycle = -kStartCycles; cycle < scene.cycles; ++cycle) {
     bounce(scene.box, *loop.obstacles);
     lead_target(loop.now_s(), loop.target);
@@ -139,7 +139,7 @@ Measured measure(const Scene& scene, const char* law) {
         computation.run(loop.model, loop.arm.position_rad, *inputs.obstacles.message, loop.target.position_m);
       });
     };
-    const double barest_us = time_us(barest), bare_us = time_us(bare);
+    const double barest_us = time_us(distance_only), bare_us = time_us(baseline);
     const double step_us = least_us([&] { result = step(loop.model, loop.state, inputs, loop.now_s()); });
     if (cycle >= 0) {
       measured.barest_us.all.push_back(barest_us);

@@ -1,6 +1,6 @@
 #include <csignal>
 
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 #include "tests/support/check.h"
 #include "tests/support/iiwa_driver.h"
 #include "tests/support/process.h"

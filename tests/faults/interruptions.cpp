@@ -103,11 +103,12 @@ void commands_of_somebody_else_brake(void**) {
   joint_command_t foreign = scene.arm.peer.commands.back();
   foreign.utime += 123456789;
   foreign.seq += 1000000;
-  test::LcmPeer rival;
-  rival.send("ARM_COMMAND", foreign);
-  rival.listen(0.3);
+  test::LcmPeer foreign_command;
+  foreign_command.send("ARM_COMMAND", foreign);
+  foreign_command.listen(0.3);
   bool braked = false;
-  for (const Status& status : rival.statuses) braked |= status.message.find("another controller") != std::string::npos;
+  for (const Status& status : foreign_command.statuses)
+    braked |= status.message.find("another controller") != std::string::npos;
   assert_true(braked);
 }
 

@@ -90,10 +90,10 @@ void the_times_of_the_loop_are_published_once_a_second(void**) {
   check_near(last.period, 0.005, 0.0);
   assert_true(last.cycles > listener.received.front().cycles);
   for (const durations_t& d :
-       {last.wake_latency, last.cycle, last.observe, last.clearance, last.law, last.shield, last.gate})
+       {last.wake_latency, last.cycle, last.monitor, last.clearance, last.law, last.shield, last.gate})
     check(d.p50 > 0.0 && d.p50 <= d.p99 && d.p99 <= d.p999 && d.p999 <= d.worst && d.worst < 1.0, "%g %g %g %g", d.p50,
           d.p99, d.p999, d.worst);
-  check(last.observe.p50 + last.clearance.p50 + last.law.p50 + last.shield.p50 + last.gate.p50 < 2.0 * last.cycle.p50,
+  check(last.monitor.p50 + last.clearance.p50 + last.law.p50 + last.shield.p50 + last.gate.p50 < 2.0 * last.cycle.p50,
         "stages and cycle, %g s", last.cycle.p50);
 }
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <csignal>
 
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 
 #include "tests/support/check.h"
 #include "tests/support/iiwa_driver.h"

@@ -39,8 +39,8 @@ class Sensor {
 
 double true_clearance_m(const ClosedLoop& loop) {
   const ObstacleView truth{loop.obstacles.get(), 0.0, 0.0};
-  const Posture posture = forward(loop.model.arm, loop.arm.position_rad);
-  return measure_clearance(loop.model.arm, posture, truth, {0.4, 0.0}).nearest.distance_m;
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  return measure_clearance(loop.model.arm, poses, truth, {0.4, 0.0}).nearest.distance_m;
 }
 
 /// A sphere that crosses the arm's room while the arm keeps its tool at a target; the least distance between the two.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "firmware/control/old_places.h"
+#include "firmware/control/obstacle_memory.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -18,7 +18,7 @@ namespace {
 const char* const kLaws[] = {"paper", "sidestep"};
 
 Vector3 tool_m(const ClosedLoop& loop) {
-  return forward(loop.model.arm, loop.arm.position_rad).tool_position;
+  return forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position;
 }
 
 /// How much the joints move to and fro in a second, at the end of a run, rad.
@@ -77,11 +77,11 @@ void in_contact_at_the_start_the_distance_only_opens(void**) {
   int played = 0;
   while (played < 20) {
     ClosedLoop loop = test::at_home("sidestep");
-    const Posture posture = forward(loop.model.arm, loop.arm.position_rad);
+    const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
     const int s = random.index(static_cast<int>(loop.model.arm.shapes.size()));
     const LinkShape& shape = loop.model.arm.shapes[static_cast<size_t>(s)];
     if (shape.body < 3) continue;  // what hardly moves cannot get away
-    const Capsule link = placed(posture, shape);
+    const Capsule link = transformed(poses, shape);
     const Vector3 aside = (link.radius_m + 0.03) * random.direction();
     loop.add_sphere(0.5 * (link.start + link.end) + aside, Vector3::Zero(), 0.05);
     loop.target_speaks = true;
@@ -106,12 +106,13 @@ void in_contact_at_the_start_the_distance_only_opens(void**) {
 /// The arm keeps clear of the place that the obstacle has left as long as it counts.
 void an_obstacle_that_jumps_counts_in_both_places(void**) {
   ClosedLoop loop = tracking("sidestep");
-  const Ages ages;
-  const auto old_places = std::make_unique<OldPlaces>(loop.model.settings.obstacle_speed_bound_mps, ages.old_place_s);
+  const Timeouts timeouts;
+  const auto obstacle_memory =
+      std::make_unique<ObstacleMemory>(loop.model.settings.obstacle_speed_bound_mps, timeouts.coast_s);
   const auto send = [&](const Vector3& place_m) {
     loop.obstacles->count = 0;
     loop.add_sphere(place_m, Vector3::Zero(), 0.1);
-    old_places->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
+    obstacle_memory->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
     loop.cycle();
     return loop.last.report.clearance_m;
   };
@@ -120,7 +121,7 @@ void an_obstacle_that_jumps_counts_in_both_places(void**) {
   assert_true(loop.last.report.clearance_m < 0.3);
   double held_s = 0.0;
   while (send(far_m) < 0.4 && held_s < 2.0) held_s += loop.model.settings.period_s();
-  check_near(held_s, ages.old_place_s, 0.011);
+  check_near(held_s, timeouts.coast_s, 0.011);
   assert_true(loop.last.report.clearance_m > 0.8);
   check_stream(loop);
 }

@@ -1,5 +1,5 @@
 // The gate for messages: bytes of any kind, as if they had come over LCM. The first byte of the input is the channel.
-#include "firmware/io/admission.h"
+#include "firmware/io/lcm/admission.h"
 
 #include <memory>
 

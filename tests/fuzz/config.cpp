@@ -1,5 +1,5 @@
 // The loader of configurations; it runs in the repository's root, where it finds the URDF.
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 #include "tests/fuzz/file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,8 +1,8 @@
 // What joins neighbours' links and our own obstacles, and the gate behind it: bytes of any kind, as if they had come
 // over LCM. The first byte of the input says from whom.
-#include "firmware/io/neighbourhood.h"
+#include "firmware/io/lcm/obstacle_merger.h"
 
-#include "firmware/io/admission.h"
+#include "firmware/io/lcm/admission.h"
 #include "tests/fuzz/require.h"
 
 using namespace sidestep;
@@ -19,7 +19,7 @@ Config between_two() {
 
 struct Listener {
   Config config = between_two();
-  Neighbourhood neighbourhood{config};
+  ObstacleMerger obstacle_merger{config};
   Admission gate{7, config.model.settings};
   ObstacleSet set;
   double now_s = 0.0;
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto listener = std::make_unique<Listener>();  // kept, so that messages follow each other as in life
   if (size == 0) return 0;
   listener->now_s += 1e-4;  // so that a whole set comes together before its parts are too old
-  const auto whole = listener->neighbourhood.join(data[0] % 3u, data + 1, size - 1, listener->now_s);
+  const auto whole = listener->obstacle_merger.join(data[0] % 3u, data + 1, size - 1, listener->now_s);
   if (!whole) return 0;
   fuzz::require(whole->age_s >= 0.0);
   const double since_s = listener->now_s - whole->age_s;

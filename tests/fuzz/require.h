@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "firmware/control/inputs.h"
+#include "firmware/control/message_order.h"
 
 namespace sidestep::fuzz {
 

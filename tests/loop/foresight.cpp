@@ -37,15 +37,15 @@ struct Foreseeing {
       look(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
       guide = &foresight->think(*snapshot);
     }
-    const Posture posture = forward(loop.model.arm, loop.arm.position_rad);
-    least_m = std::min(least_m, clearance_after(loop.model.arm, posture, loop.obstacles->obstacles.data(),
+    const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+    least_m = std::min(least_m, clearance_after(loop.model.arm, poses, loop.obstacles->obstacles.data(),
                                                 loop.obstacles->count, 0.0, 1.0));
   }
   void run(double duration_s) {
     for (int i = 0; i < std::lround(duration_s * 100); ++i) cycle();
   }
   double error_m() const {
-    return (forward(loop.model.arm, loop.arm.position_rad).tool_position - loop.target.position_m).norm();
+    return (forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position - loop.target.position_m).norm();
   }
   /// Two posts on the straight way of the forearm, and a bar between them.
   void put_in_the_way() {
@@ -75,7 +75,8 @@ void where_the_law_will_do_there_is_no_guide(void**) {
   for (int i = 0; i < 400; ++i) {
     world.cycle();
     check(!world.guide || world.guide->knots == 0, "a guide at cycle %d", i);
-    assert_int_equal(static_cast<int>(world.loop.last.report.outlook), static_cast<int>(Outlook::kDirect));
+    assert_int_equal(static_cast<int>(world.loop.last.report.foresight_status),
+                     static_cast<int>(ForesightStatus::kDirect));
   }
   check(world.error_m() < 1e-3, "%g m", world.error_m());
 }
@@ -126,7 +127,7 @@ void a_guide_that_the_world_has_outdated_is_dropped_within_100_ms(void**) {
   check(cycles < 500, "no guide");
   const Guide old = *world.guide;
   // A ball where the guide leads: nothing gets to its end any more.
-  const Posture end = forward(world.loop.model.arm, point_of(old, old.end_s()).position_rad);
+  const LinkPoses end = forward_kinematics(world.loop.model.arm, point_of(old, old.end_s()).position_rad);
   world.loop.add_sphere(end.tool_position, Vector3::Zero(), 0.25);
   for (int i = 0; i < 10; ++i) world.cycle();
   const bool kept = world.guide->knots == old.knots && world.guide->position_rad[1] == old.position_rad[1];
@@ -136,7 +137,8 @@ void a_guide_that_the_world_has_outdated_is_dropped_within_100_ms(void**) {
 void a_target_that_nobody_can_reach_is_waited_for(void**) {
   Foreseeing world(Vector3(2.0, 0.0, 0.5), true);
   world.run(4.0);
-  assert_int_equal(static_cast<int>(world.loop.last.report.outlook), static_cast<int>(Outlook::kWaiting));
+  assert_int_equal(static_cast<int>(world.loop.last.report.foresight_status),
+                   static_cast<int>(ForesightStatus::kWaiting));
   test::check_stream(world.loop);
 }
 

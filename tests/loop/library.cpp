@@ -92,14 +92,14 @@ void a_pose_is_tracked(void**) {
   Loop loop;
   loop.target.tracks_orientation = true;
   const JointVector there_rad = test::home_rad() + JointVector::Constant(7, 0.2);
-  const Posture there = forward(test::lwa3(), there_rad);
+  const LinkPoses there = forward_kinematics(test::lwa3(), there_rad);
   const Quaternion turn(there.tool_rotation);
   std::copy_n(there.tool_position.data(), 3, loop.target.position_m.begin());
   loop.target.orientation = {turn.w(), turn.x(), turn.y(), turn.z()};
   loop.run(4.0);
   const JointVector q_rad = Eigen::Map<const JointVector>(loop.arm.position_rad.data(), 7);
-  const Matrix3 turned = forward(test::lwa3(), q_rad).tool_rotation;
-  const double off_rad = Quaternion(turned).angularDistance(turn);
+  const Matrix3 rotated = forward_kinematics(test::lwa3(), q_rad).tool_rotation;
+  const double off_rad = Quaternion(rotated).angularDistance(turn);
   check(off_rad < 1e-2 && loop.last.target_distance_m < 1e-3, "%g rad, %g m", off_rad, loop.last.target_distance_m);
 }
 

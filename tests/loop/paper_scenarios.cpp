@@ -28,8 +28,8 @@ struct Figures {
 };
 
 double least_axis_distance_m(const ClosedLoop& loop) {
-  const Posture posture = forward(loop.model.arm, loop.arm.position_rad);
-  const Vector3 joints[] = {posture.origin[1], posture.origin[3], posture.origin[5], posture.tool_position};
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  const Vector3 joints[] = {poses.origin[1], poses.origin[3], poses.origin[5], poses.tool_position};
   double least_m = HUGE_VAL;
   for (int o = 0; o < loop.obstacles->count; ++o) {
     const Vector3& centre = loop.obstacles->obstacles[static_cast<size_t>(o)].capsule.start;

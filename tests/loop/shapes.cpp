@@ -16,11 +16,11 @@ std::vector<sim::Obstacle> solids(const ClosedLoop& loop) {
   std::vector<sim::Obstacle> solids;
   const ObstacleView all{loop.obstacles.get(), 0.0, 0.0, &loop.model.surroundings};
   for (int i = 0; i < all.count(); ++i) {
-    const test::PlacedSolid placed = test::placed_solid(all.at(i));
+    const test::PlacedSolid transformed = test::placed_solid(all.at(i));
     sim::Obstacle& obstacle = solids.emplace_back();
-    obstacle.solid = placed.solid;
-    obstacle.motion.position_m = placed.base_from_solid.translation();
-    obstacle.motion.orientation = placed.base_from_solid.linear();
+    obstacle.solid = transformed.solid;
+    obstacle.motion.position_m = transformed.base_from_solid.translation();
+    obstacle.motion.orientation = transformed.base_from_solid.linear();
   }
   return solids;
 }

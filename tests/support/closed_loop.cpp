@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "firmware/io/config.h"
+#include "firmware/io/config/config.h"
 #include "tests/support/check.h"
 #include "tests/support/lwa3.h"
 
@@ -54,7 +54,7 @@ void ClosedLoop::follow(const Result& result) {
     target.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
   for (int i = 0; i < obstacles->count; ++i) {
     Obstacle& obstacle = obstacles->obstacles[static_cast<size_t>(i)];
-    obstacle = moved(obstacle, period_s);
+    obstacle = extrapolated(obstacle, period_s);
   }
 }
 

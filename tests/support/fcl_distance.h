@@ -14,17 +14,17 @@ struct PlacedSolid {
 inline PlacedSolid placed_solid(const Capsule& capsule) {
   const Vector3 axis = capsule.end - capsule.start;
   const Vector3 z = axis.norm() > 0.0 ? axis.normalized() : Vector3(Vector3::UnitZ()), x = z.unitOrthogonal();
-  PlacedSolid placed{{sim::Shape::kCapsule, Vector3(capsule.radius_m, axis.norm(), 0)}};
-  placed.base_from_solid.linear() << x, z.cross(x), z;
-  placed.base_from_solid.translation() = 0.5 * (capsule.start + capsule.end);
-  return placed;
+  PlacedSolid transformed{{sim::Shape::kCapsule, Vector3(capsule.radius_m, axis.norm(), 0)}};
+  transformed.base_from_solid.linear() << x, z.cross(x), z;
+  transformed.base_from_solid.translation() = 0.5 * (capsule.start + capsule.end);
+  return transformed;
 }
 
 inline PlacedSolid placed_solid(const Box& box) {
-  PlacedSolid placed{{sim::Shape::kBox, 2.0 * box.half_m}};
-  placed.base_from_solid.linear() = box.axes;
-  placed.base_from_solid.translation() = box.centre;
-  return placed;
+  PlacedSolid transformed{{sim::Shape::kBox, 2.0 * box.half_m}};
+  transformed.base_from_solid.linear() = box.axes;
+  transformed.base_from_solid.translation() = box.centre;
+  return transformed;
 }
 
 inline PlacedSolid placed_solid(const Obstacle& obstacle) {

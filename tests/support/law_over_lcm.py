@@ -87,7 +87,7 @@ def compare(wire, rows):
 
 
 def main():
-    config = yaml.safe_load((ROOT / "firmware/config/lwa3.yaml").read_text()) | {"limits": WIDE, "ages": {"old_place_s": 0}}
+    config = yaml.safe_load((ROOT / "firmware/config/lwa3.yaml").read_text()) | {"limits": WIDE, "timeouts": {"coast_s": 0}}
     rows, url = cases(seed=77, count=400), sys.argv[1]
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
         yaml.safe_dump(config, file)

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "firmware/control/limits.h"
+#include "firmware/model/velocity_range.h"
 
 namespace sidestep::test {
 namespace {

@@ -37,7 +37,7 @@ class Random {
     return v;
   }
   /// Within this share of the position limits; without limits within half a turn.
-  JointVector posture(const Arm& arm, double share = 1.0) {
+  JointVector poses(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {
       const double lower = std::max(arm.limits.lower_rad[i], -M_PI), upper = std::min(arm.limits.upper_rad[i], M_PI);

@@ -1,0 +1,31 @@
+#include "firmware/control/extrapolation.h"
+
+#include <algorithm>
+
+namespace sidestep {
+
+ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s) {
+  if (!obstacles.message) return {nullptr, 0.0, 0.0, &model.surroundings};
+  const Settings& settings = model.settings;
+  const ObstacleTrust& trust = settings.obstacle_trust;
+  const double age_s = std::max(0.0, obstacles.age_s(now_s)) + trust.latency_s;  // a clock may be set back
+  const double anywhere_m = age_s * settings.obstacle_speed_bound_mps;
+  const double astray_m = std::min(anywhere_m, 0.5 * trust.acceleration_bound_mps2 * age_s * age_s);
+  const bool fresh = obstacles.fresh(now_s, settings.timeouts.obstacles_s);
+  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? astray_m : anywhere_m), &model.surroundings};
+}
+
+Target extrapolated(const Target& target, double dt_s) {
+  Target later = target;
+  later.position_m += target.velocity_mps * dt_s;
+  const Vector3 turn = target.angular_velocity_radps * dt_s;
+  if (target.tracks_orientation && turn.squaredNorm() > 0.0)
+    later.orientation = Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * target.orientation;
+  return later;
+}
+
+Target extrapolated(const Latest<Target>& latest, double now_s) {
+  return extrapolated(*latest.message, latest.age_s(now_s));
+}
+
+}  // namespace sidestep

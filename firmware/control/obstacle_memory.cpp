@@ -1,0 +1,123 @@
+#include "firmware/control/obstacle_memory.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace sidestep {
+namespace {
+
+constexpr double kNoise_m = 0.05;     // what a measurement may be wrong by
+constexpr double kRounding_s = 1e-6;  // of times that are a whole number of periods apart
+
+/// How far the ends of the axis have moved, or the sides of a box turned; which is which does not matter.
+double displacement_m(const Obstacle& before, const Obstacle& now) {
+  const Capsule &a = before.capsule, &b = now.capsule;
+  const double straight_m = std::max((a.start - b.start).norm(), (a.end - b.end).norm());
+  const double crossed_m = std::max((a.start - b.end).norm(), (a.end - b.start).norm());
+  const Vector3 &u = before.half_width_m, &v = now.half_width_m;
+  return std::max(std::min(straight_m, crossed_m), std::min((u - v).norm(), (u + v).norm()));
+}
+
+/// The speed of the fastest point of the axis.
+double speed_mps(const Obstacle& obstacle) {
+  const double half_length_m = 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm();
+  return obstacle.velocity_mps.norm() + obstacle.angular_velocity_radps.norm() * half_length_m;
+}
+
+}  // namespace
+
+void ObstacleMemory::sort(const ObstacleSet& set) {
+  std::iota(order_.begin(), order_.begin() + set.count, 0);
+  std::sort(order_.begin(), order_.begin() + set.count, [&](int a, int b) {
+    const int32_t id_a = set.obstacles[a].id, id_b = set.obstacles[b].id;
+    return id_a != id_b ? id_a < id_b : a < b;
+  });
+}
+
+bool ObstacleMemory::could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const {
+  const double fastest_mps = std::max({speed_bound_mps_, speed_mps(before), speed_mps(now)});
+  return displacement_m(before, now) <= fastest_mps * elapsed_s + kNoise_m;
+}
+
+bool ObstacleMemory::counts(const RememberedObstacle& place, double now_s) const {
+  // A time to come is of a clock that has been set back.
+  return place.since_s <= now_s && place.since_s + memory_s_ > now_s + kRounding_s;
+}
+
+void ObstacleMemory::remember_jump(RememberedObstacle place) {
+  place.obstacle.velocity_mps.setZero();
+  place.obstacle.angular_velocity_radps.setZero();
+  jumped_[next_jump_] = place;
+  next_jump_ = (next_jump_ + 1) % kMostJumps;
+}
+
+/// Goes through the set before, the new one and what was gone already, all by id.
+void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double now_s) {
+  const Gone& were_gone = gone_[now_];
+  Gone& gone = gone_[1 - now_];
+  gone.count = 0;
+  int b = 0, n = 0, g = 0;
+  const auto keep_gone_below = [&](int64_t id) {
+    for (; g < were_gone.count && were_gone.places[g].obstacle.id < id; ++g)
+      if (counts(were_gone.places[g], now_s)) gone.add(were_gone.places[g]);
+  };
+  while (b < before_count_ || n < set.count) {
+    const int64_t none = int64_t{std::numeric_limits<int32_t>::max()} + 1;
+    const int64_t id_before = b < before_count_ ? before_[b].id : none;
+    const int64_t id_now = n < set.count ? set.obstacles[order_[n]].id : none;
+    keep_gone_below(std::min(id_before, id_now));
+    if (id_before < id_now) {
+      gone.add({before_[b++], before_s_});
+    } else if (id_now < id_before) {
+      if (g < were_gone.count && were_gone.places[g].obstacle.id == id_now) ++g;  // is back
+      ++n;
+    } else {
+      if (!could_move(before_[b], set.obstacles[order_[n]], elapsed_s)) remember_jump({before_[b], before_s_});
+      ++b, ++n;
+    }
+  }
+  keep_gone_below(std::numeric_limits<int64_t>::max());
+  now_ = 1 - now_;
+}
+
+void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double now_s) {
+  sort(set);
+  const Gone& were_gone = gone_[now_];
+  Gone& gone = gone_[1 - now_];
+  gone.count = 0;
+  int b = 0, g = 0;
+  for (int n = 0; n < set.count; ++n) {
+    const RememberedObstacle late{set.obstacles[order_[n]], now_s};
+    const int32_t id = late.obstacle.id;
+    for (; g < were_gone.count && were_gone.places[g].obstacle.id <= id; ++g)
+      if (were_gone.places[g].obstacle.id < id) gone.add(were_gone.places[g]);
+    while (b < before_count_ && before_[b].id < id) ++b;
+    if (b == before_count_ || before_[b].id > id)
+      gone.add(late);
+    else if (!could_move(late.obstacle, before_[b], late_s))
+      remember_jump(late);
+  }
+  while (g < were_gone.count) gone.add(were_gone.places[g++]);
+  now_ = 1 - now_;
+}
+
+void ObstacleMemory::add(const RememberedObstacle& place, double now_s, ObstacleSet& set) const {
+  if (!counts(place, now_s) || set.count == kMaxObstacles) return;
+  set.obstacles[set.count++] = extrapolated(place.obstacle, now_s - place.since_s);
+  ++set.obstacle_memory;
+}
+
+void ObstacleMemory::complete(ObstacleSet& set, double elapsed_s, double now_s) {
+  sort(set);
+  compare(set, elapsed_s, now_s);
+  before_count_ = set.count;
+  before_s_ = now_s;
+  for (int n = 0; n < before_count_; ++n) before_[n] = set.obstacles[order_[n]];
+
+  set.obstacle_memory = 0;
+  for (const RememberedObstacle& place : jumped_) add(place, now_s, set);
+  for (int i = 0; i < gone_[now_].count; ++i) add(gone_[now_].places[i], now_s, set);
+}
+
+}  // namespace sidestep

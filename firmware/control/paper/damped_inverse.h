@@ -1,0 +1,25 @@
+#pragma once
+
+#include "firmware/control/types/settings.h"
+#include "firmware/model/types.h"
+
+namespace sidestep {
+
+/// The inverses that the paper builds on, of one m x n task Jacobian, m = 3 or 6.
+struct TaskInverse {
+  TaskJacobian damped_transposed;  ///< m x n: J*^T, paper eq (5); J* x = damped_transposed^T x
+  JointMatrix null_space;          ///< n x n projector I - J+ J with the exact, truncated inverse (paper-notes item 6)
+  double lambda;                   ///< damping, paper eq (6)
+
+  JointVector operator*(const TaskVector& task_velocity) const { return damped_transposed.transpose() * task_velocity; }
+};
+
+/// lambda^2 of paper eq (6) for the smallest singular value sigma_m of the task Jacobian.
+double damping_squared(double lambda_0, double sigma_0, double sigma_m);
+
+TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian);
+
+/// A^T (A A^T + lambda^2 I)^-1 b of a 3 x n matrix A.
+JointVector damped_solve(const PointJacobian& a, double lambda, const Vector3& b);
+
+}  // namespace sidestep

@@ -1,0 +1,145 @@
+#include "firmware/io/blackbox/blackbox_log.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <lcm/lcm-cpp.hpp>
+#include <sidestep/blackbox_t.hpp>
+#include <stdexcept>
+
+#include "firmware/base/realtime.h"
+
+namespace sidestep {
+namespace {
+
+using Record = RecordRing::Copy::Record;
+using Messages = std::array<Record, kMessageKinds>;
+
+/// Calls use(cycle, messages) for every cycle since a time all of whose messages are there. `messages` are those that
+/// came after the cycle before, the others are empty.
+template <typename Use>
+void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
+  Messages messages;
+  std::array<bool, kMessageKinds> seen{};
+  const auto lacks = [&seen](const auto& latest, RecordKind kind) {
+    return latest.message && !seen[static_cast<size_t>(kind)];
+  };
+  Record record;
+  for (records.rewind(); records.next(record);) {
+    if (record.kind != static_cast<uint8_t>(RecordKind::kCycle)) {
+      messages[record.kind] = record;
+      if (record.kind == static_cast<uint8_t>(RecordKind::kObstacles))
+        messages[static_cast<size_t>(RecordKind::kRemembered)] = {};
+      seen[record.kind] = true;
+      continue;
+    }
+    RecordedCycle cycle;
+    std::memcpy(static_cast<void*>(&cycle), record.bytes, sizeof cycle);
+    if (cycle.report.guide) cycle.report.guide = &cycle.arguments.guide;  // it pointed to where the cycle was made
+    const Inputs& inputs = cycle.arguments.inputs;
+    if (cycle.arguments.now_s < since_s || lacks(inputs.arm, RecordKind::kArmState) ||
+        lacks(inputs.target, RecordKind::kTarget) || lacks(inputs.obstacles, RecordKind::kObstacles))
+      continue;
+    use(cycle, messages);
+    messages = {};
+  }
+}
+
+class Log {
+ public:
+  Log(const std::string& file, const Config& config, double newest_s)
+      : file_(file),
+        log_(file, "w"),
+        channels_(config.channels),
+        encoder_(config.model.arm, config.dialect),
+        epoch_s_(wall_s() - newest_s) {
+    if (!log_.good()) throw std::runtime_error(fmt::format("{}: {}", file, std::strerror(errno)));
+  }
+
+  void write(const std::string& channel, double at_s, const Packet& packet) {
+    lcm::LogEvent event{0, static_cast<int64_t>((epoch_s_ + at_s) * 1e6), channel, static_cast<int32_t>(packet.size),
+                        const_cast<uint8_t*>(packet.bytes)};
+    if (log_.writeEvent(&event) != 0) give_up();
+  }
+
+  void write(const RecordedCycle& cycle, const Messages& messages) {
+    const StepArguments& arguments = cycle.arguments;
+    write_new(channels_.arm_state, arguments.inputs.arm, messages, RecordKind::kArmState);
+    write_new(channels_.target, arguments.inputs.target, messages, RecordKind::kTarget);
+    const Record& obstacle_memory = messages[static_cast<size_t>(RecordKind::kRemembered)];
+    if (write_new(channels_.obstacles, arguments.inputs.obstacles, messages, RecordKind::kObstacles) &&
+        obstacle_memory.size > 0)
+      write(kRememberedChannel, arguments.inputs.obstacles.received_s,
+            Packet{obstacle_memory.bytes, obstacle_memory.size});
+    StepArgumentsImage image;
+    to_image(arguments, image);
+    write(kStepArgumentsChannel, arguments.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
+    if (cycle.commanded)
+      write(channels_.arm_command, arguments.now_s, encoder_.encode(cycle.command, arguments.utime, arguments.seq));
+    write(channels_.controller_status, arguments.now_s, encoder_.encode(cycle.report, cycle.record));
+  }
+
+  void finish() {
+    if (std::fflush(log_.getFilePtr()) != 0) give_up();
+  }
+
+ private:
+  /// A message that is long in use stands in the ring again and again, in the log once. Returns whether it is new.
+  template <typename Message>
+  bool write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, RecordKind kind) {
+    const auto k = static_cast<size_t>(kind);
+    if (latest.count == written_[k]) return false;
+    written_[k] = latest.count;
+    write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
+    return true;
+  }
+
+  [[noreturn]] void give_up() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
+
+  std::string file_;
+  lcm::LogFile log_;
+  Channels channels_;
+  Encoder encoder_;
+  double epoch_s_;
+  std::array<int64_t, kMessageKinds> written_{};  ///< counts of the messages last written
+};
+
+std::vector<uint8_t> header(const Config& config, const std::string& reason, int64_t utime, int64_t cycles) {
+  blackbox_t message;
+  message.utime = utime;
+  message.reason = reason;
+  message.config = config.file;
+  message.law = config.overrides.law;
+  message.urdf = config.overrides.urdf;
+  message.base = config.overrides.base;
+  message.tip = config.overrides.tip;
+  message.rate_hz = config.overrides.rate_hz;
+  message.cycles = cycles;
+  message.image_bytes = sizeof(StepArgumentsImage);
+  std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+}  // namespace
+
+int64_t write_blackbox_log(const std::string& file, const Config& config, const std::string& reason,
+                           RecordRing::Copy& records) {
+  StepArguments newest;
+  for_each_cycle(records, -HUGE_VAL, [&](const RecordedCycle& cycle, const Messages&) { newest = cycle.arguments; });
+  const double since_s = newest.now_s - config.blackbox.seconds;
+  int64_t cycles = 0;
+  for_each_cycle(records, since_s, [&](const RecordedCycle&, const Messages&) { ++cycles; });
+
+  Log log(file, config, newest.now_s);
+  const std::vector<uint8_t> first = header(config, reason, newest.utime, cycles);
+  log.write(kBlackboxChannel, newest.now_s, Packet{first.data(), first.size()});
+  for_each_cycle(records, since_s,
+                 [&](const RecordedCycle& cycle, const Messages& messages) { log.write(cycle, messages); });
+  log.finish();
+  return cycles;
+}
+
+}  // namespace sidestep

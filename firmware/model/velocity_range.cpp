@@ -1,0 +1,67 @@
+#include "firmware/model/velocity_range.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/control/types/messages.h"
+
+namespace sidestep {
+
+double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s) {
+  if (std::isinf(gap_rad)) return gap_rad;
+  // v T + v^2 / (2 a) = gap: after one more period at v, braking at a just reaches the limit.
+  const double aT = acceleration_radps2 * period_s;
+  const double v = std::sqrt(aT * aT + 2.0 * acceleration_radps2 * std::abs(gap_rad)) - aT;
+  return std::copysign(v, gap_rad);
+}
+
+VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
+                                const JointVector& highest_rad, double period_s) {
+  VelocityRange range{lowest_rad, highest_rad};
+  for (Eigen::Index i = 0; i < lowest_rad.size(); ++i) {
+    const double a = limits.acceleration_radps2[i], v_max = limits.velocity_radps[i];
+    const double down = -stopping_velocity(lowest_rad[i] - limits.lower_rad[i], a, period_s);
+    const double up = stopping_velocity(limits.upper_rad[i] - highest_rad[i], a, period_s);
+    range.lower_radps[i] = std::clamp(down, -v_max, v_max);
+    range.upper_radps[i] = std::max(std::clamp(up, -v_max, v_max), range.lower_radps[i]);
+  }
+  return range;
+}
+
+VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
+                             const JointVector& last_velocity_radps, double period_s) {
+  VelocityRange range = sustainable_range(limits, lowest_rad, highest_rad, period_s);
+  for (Eigen::Index i = 0; i < lowest_rad.size(); ++i) {
+    const double change = limits.acceleration_radps2[i] * period_s;
+    const double slowest = last_velocity_radps[i] - change, fastest = last_velocity_radps[i] + change;
+    range.lower_radps[i] = std::clamp(range.lower_radps[i], slowest, fastest);
+    range.upper_radps[i] = std::clamp(range.upper_radps[i], slowest, fastest);
+  }
+  return range;
+}
+
+int apply_limits(const JointLimits& limits, const VelocityRange& range, const JointVector& last_velocity_radps,
+                 double period_s, JointVector& velocity_radps) {
+  int limiting = kLimitingNothing;
+  const double excess = velocity_radps.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff();
+  if (excess > 1.0) {
+    velocity_radps /= excess;
+    limiting |= kLimitingVelocity;
+  }
+  for (Eigen::Index i = 0; i < velocity_radps.size(); ++i) {
+    const double allowed = std::clamp(velocity_radps[i], range.lower_radps[i], range.upper_radps[i]);
+    const double rounding_radps = 1e-12;
+    if (std::abs(allowed - velocity_radps[i]) < rounding_radps) continue;
+    const double change = std::abs(velocity_radps[i] - last_velocity_radps[i]);
+    limiting |= change > limits.acceleration_radps2[i] * period_s ? kLimitingAcceleration : kLimitingPosition;
+    velocity_radps[i] = allowed;
+  }
+  return limiting;
+}
+
+JointVector brake(const JointLimits& limits, const JointVector& last_velocity_radps, double period_s) {
+  const JointVector step = limits.acceleration_radps2 * period_s;
+  return last_velocity_radps - last_velocity_radps.cwiseMax(-step).cwiseMin(step);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,132 @@
+#include "firmware/control/types/guide.h"
+
+#include "firmware/control/guided_law.h"
+#include "firmware/control/sidestep_law.h"
+#include "firmware/foresight/inverse_kinematics.h"
+#include "firmware/foresight/rollout.h"
+#include "firmware/foresight/snapshot.h"
+#include "firmware/model/prediction.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+Guide random_guide(Random& random, int knots) {
+  Guide guide{ForesightStatus::kGuided, knots, {}, {}};
+  double time_s = 1.0;
+  for (int k = 0; k < knots; ++k) {
+    guide.time_s[static_cast<size_t>(k)] = time_s;
+    guide.position_rad[static_cast<size_t>(k)] = random.poses(lwa3());
+    time_s += random.uniform(0.3, 2.0);
+  }
+  return guide;
+}
+
+void a_guide_rests_in_its_knots_and_before_and_after(void**) {
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Guide guide = random_guide(random, 1 + trial % kMaxKnots);
+    for (int k = 0; k < guide.knots; ++k) {
+      const GuidePoint point = point_of(guide, guide.time_s[static_cast<size_t>(k)]);
+      check_near(point.position_rad, guide.position_rad[static_cast<size_t>(k)], 1e-12);
+      check_near(point.velocity_radps, JointVector::Zero(7), 1e-12);
+    }
+    check_near(point_of(guide, -5.0).position_rad, guide.position_rad[0], 0.0);
+    check_near(point_of(guide, 1e6).position_rad, guide.position_rad[static_cast<size_t>(guide.knots - 1)], 0.0);
+    check_near(point_of(guide, 1e6).velocity_radps, JointVector::Zero(7), 0.0);
+  }
+}
+
+void the_velocity_of_a_guide_is_the_slope_of_its_position(void**) {
+  Random random(2);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Guide guide = random_guide(random, 3);
+    const double at_s = random.uniform(0.9, guide.end_s() + 0.1), h_s = 1e-6;
+    const JointVector slope =
+        (point_of(guide, at_s + h_s).position_rad - point_of(guide, at_s - h_s).position_rad) / (2.0 * h_s);
+    check_near_because(point_of(guide, at_s).velocity_radps, slope, 1e-4, "trial %d at %g s", trial, at_s);
+  }
+}
+
+void behind_its_end_a_guide_is_only_a_preference_and_a_place_to_wait_is_kept(void**) {
+  Random random(3);
+  const SidestepGains gains;
+  const LinkPoses poses = forward_kinematics(lwa3(), test::home_rad());
+  const JointVector q_rad = test::home_rad(), at_rest = JointVector::Zero(7);
+  Target target;
+  target.position_m = poses.tool_position;
+  const Situation now{lwa3(), poses, tool_jacobian(poses, 3), q_rad, at_rest, target, ObstacleView{}, Clearance{}};
+  Guide guide = random_guide(random, 2);
+  const double after_s = guide.end_s() + 1.0;
+  const NominalCommand holding = guided_law(gains, now, guide, after_s);
+  check((tool_jacobian(poses, 3) * holding.velocity_radps).norm() < 0.02, "the tool is not held");
+  check(holding.velocity_radps.norm() > 0.05, "the posture is not preferred");
+  guide.foresight_status = ForesightStatus::kWaiting;
+  check_near(guided_law(gains, now, guide, after_s).velocity_radps,
+             JointVector(gains.k_guide_per_s * (guide.position_rad[1] - q_rad)), 1e-12);
+}
+
+void goal_postures_have_the_target_within_the_limits(void**) {
+  Random random(4);
+  int reached = 0, asked = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const LinkPoses goal = forward_kinematics(lwa3(), random.poses(lwa3(), 0.9));
+    Target target;
+    target.position_m = goal.tool_position;
+    target.tracks_orientation = trial % 2;
+    target.orientation = Quaternion(goal.tool_rotation);
+    JointVector q_rad = random.poses(lwa3(), 0.9);
+    ++asked;
+    if (!solve_ik(lwa3(), target, q_rad)) continue;
+    ++reached;
+    const LinkPoses found = forward_kinematics(lwa3(), q_rad);
+    check((found.tool_position - target.position_m).norm() < 1e-3, "trial %d", trial);
+    if (target.tracks_orientation)
+      check(Quaternion(found.tool_rotation).angularDistance(target.orientation) < 1.1e-2, "trial %d", trial);
+    check((q_rad.array() >= lwa3().limits.lower_rad.array()).all(), "trial %d", trial);
+    check((q_rad.array() <= lwa3().limits.upper_rad.array()).all(), "trial %d", trial);
+  }
+  check(reached > asked / 2, "only %d of %d", reached, asked);
+}
+
+void clearance_after_a_while_is_that_of_the_moved_obstacles(void**) {
+  Random random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    std::array<Obstacle, 5> obstacles;
+    for (Obstacle& obstacle : obstacles) {
+      const Vector3 centre = random.inside(-1, 1);
+      const Matrix3 rotation = random.turn().toRotationMatrix();
+      obstacle = random.chance(0.5) ? box_obstacle(centre, rotation, random.inside(0.01, 0.5))
+                                    : capsule_obstacle(centre, rotation, random.uniform(0.01, 0.1), 0.4);
+      obstacle.velocity_mps = random.inside(-0.3, 0.3);
+      obstacle.angular_velocity_radps = random.inside(-1, 1);
+    }
+    const double after_s = random.uniform(0, 3), enough_m = random.uniform(0.02, 1.0);
+    double least_m = enough_m;
+    for (const Obstacle& obstacle : obstacles)
+      for (const LinkShape& shape : lwa3().shapes)
+        if (shape.body > 0)
+          least_m =
+              std::min(least_m, measure_pair(transformed(poses, shape), extrapolated(obstacle, after_s)).distance_m);
+    check_near(clearance_after(lwa3(), poses, obstacles.data(), 5, after_s, enough_m), least_m, 1e-12);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_guide_rests_in_its_knots_and_before_and_after),
+      cmocka_unit_test(the_velocity_of_a_guide_is_the_slope_of_its_position),
+      cmocka_unit_test(behind_its_end_a_guide_is_only_a_preference_and_a_place_to_wait_is_kept),
+      cmocka_unit_test(goal_postures_have_the_target_within_the_limits),
+      cmocka_unit_test(clearance_after_a_while_is_that_of_the_moved_obstacles),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

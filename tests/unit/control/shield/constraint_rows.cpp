@@ -1,0 +1,359 @@
+#include "firmware/control/shield/constraint_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "firmware/model/load/self_pairs.h"
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+constexpr double kStep_rad = 1e-6;
+constexpr double kTolerance = 1e-6;
+constexpr double kKink_m = 0.01;  // nearer than this to each other axes bend the distance too much to differentiate
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+const ShieldSettings kSettings;
+
+VelocityRange range_of(double radps) {
+  return {JointVector::Constant(7, -radps), JointVector::Constant(7, radps)};
+}
+
+/// Everything that is said of the rows of one posture among obstacles.
+struct Scene {
+  JointVector q_rad, last_radps = JointVector::Zero(7);
+  LinkPoses poses;
+  std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
+  Clearance clearance;
+  Pairs self_pairs;
+
+  explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {}
+
+  void add(const Obstacle& obstacle) { set->obstacles[static_cast<size_t>(set->count++)] = obstacle; }
+  RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {
+    const ObstacleView view{set.get(), 0.0, 0.0};
+    const ShieldInput now{lwa3(), poses, q_rad, last_radps, clearance, view, self_pairs, last_radps, 0.01, 1.0};
+    return make_rows(kSettings, now, sustainable, range);
+  }
+  ConstraintRows rows(const VelocityRange& range, bool hard_only = false) const {
+    const RowSets rows = row_sets(range, range);
+    return hard_only ? rows.step : rows.plan;
+  }
+  /// The rows of one pair, none of them dropped.
+  ConstraintRows rows_of(const NearPair& pair, bool hard_only = false) {
+    clearance.near.clear();
+    clearance.near.add(pair);
+    return rows(range_of(1e9), hard_only);
+  }
+};
+
+/// As slow as the gain says, and slow enough to brake within the room with half of what the joints have, after one more
+/// period at that speed.
+double hard_bound(const JointVector& row, double room_m) {
+  const double by_gain_mps = kSettings.hard_gain_per_s * room_m;
+  if (room_m <= 0.0) return std::min(3.0, -by_gain_mps);
+  const double b = 0.5 * row.cwiseAbs().dot(lwa3().limits.acceleration_radps2), period_s = 0.01;
+  return -std::min(by_gain_mps, -b * period_s + std::sqrt(b * b * period_s * period_s + 2.0 * b * room_m));
+}
+
+/// A link that turns about its own axis, say, cannot change the distance at all; such a row is left out if met.
+bool can_matter(const JointVector& by_joint) {
+  return by_joint.norm() > 1e-6;
+}
+
+/// Derivative of a distance by the joints, by central differences.
+JointVector slope(const JointVector& q_rad, const std::function<double(const LinkPoses&)>& distance_m) {
+  JointVector by_joint(q_rad.size());
+  for (int i = 0; i < q_rad.size(); ++i) {
+    JointVector more = q_rad, less = q_rad;
+    more[i] += kStep_rad;
+    less[i] -= kStep_rad;
+    by_joint[i] = (distance_m(forward_kinematics(lwa3(), more)) - distance_m(forward_kinematics(lwa3(), less))) /
+                  (2.0 * kStep_rad);
+  }
+  return by_joint;
+}
+
+const LinkShape& shape_of(int index) {
+  return lwa3().shapes[static_cast<size_t>(index)];
+}
+
+Obstacle any_shape(const Vector3& centre, Random& random) {
+  const Matrix3 rotation = random.turn().toRotationMatrix();
+  if (random.chance(0.4)) return sphere_obstacle(centre, random.uniform(0, 0.15));
+  if (random.chance(0.5)) return capsule_obstacle(centre, rotation, random.uniform(0, 0.15), random.uniform(0, 0.6));
+  return box_obstacle(centre, rotation, random.inside(0.01, 0.5));
+}
+
+/// An obstacle from deep in the link to the end of the range, at rest or not.
+Obstacle any_obstacle(const Capsule& link, Random& random) {
+  Obstacle obstacle = any_shape(
+      link.start + random.uniform(0, 1) * (link.end - link.start) + random.direction() * random.uniform(0, 0.4),
+      random);
+  if (random.chance(0.7)) obstacle.velocity_mps = random.inside(-1, 1);
+  return obstacle;
+}
+
+NearPair pair_of(const LinkPoses& poses, int shape, int index, const Obstacle& obstacle) {
+  const Capsule link = transformed(poses, shape_of(shape));
+  const Proximity now = measure_pair(link, obstacle);
+  NearPair pair{now, predict_closest_approach(link, obstacle, now, kSettings.pass_horizon_s),
+                velocity_at(obstacle, now.on_obstacle)};
+  pair.now.shape = shape;
+  pair.now.obstacle = index;
+  return pair;
+}
+
+int moving_shape(Random& random) {
+  int shape = 0;
+  while (shape_of(shape).body == 0) shape = random.index(static_cast<int>(lwa3().shapes.size()));
+  return shape;
+}
+
+void check_distance_rows(Scene& scene, const NearPair& pair, const Obstacle& obstacle, int trial, int (&seen)[2]) {
+  const JointVector expected = slope(scene.q_rad, [&](const LinkPoses& poses) {
+    return measure_pair(transformed(poses, shape_of(pair.now.shape)), obstacle).distance_m;
+  });
+  const ConstraintRows rows = scene.rows_of(pair);
+  for (const ConstraintRow& row : rows) {
+    if (row.tier == Tier::kPass) continue;
+    check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.now.distance_m);
+    ++seen[row.tier == Tier::kComfort];
+  }
+}
+
+void rows_of_distances_are_their_slopes(void**) {
+  Random random(1);
+  int seen[2] = {}, inside = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    Scene scene(random.poses(lwa3()));
+    const int shape = moving_shape(random);
+    const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    if (std::abs(pair.now.axis_distance_m) < kKink_m || pair.now.distance_m > kSettings.range_m) continue;
+    check_distance_rows(scene, pair, obstacle, trial, seen);
+    if (pair.now.distance_m < 0.0) ++inside;
+  }
+  check(seen[0] > 2000 && seen[1] > 2000 && inside > 300, "%d hard, %d comfort, %d inside", seen[0], seen[1], inside);
+}
+
+/// d' >= -gain (d - clearance), for an obstacle that stays where it is; never a demand that no arm can meet.
+void the_bounds_of_distances_are_barriers(void**) {
+  Random random(2);
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.poses(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    obstacle.velocity_mps.setZero();
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    const ConstraintRows rows = scene.rows_of(pair);
+    const double d = pair.now.distance_m;
+    if (d > kSettings.range_m) {
+      assert_int_equal(rows.size(), 0);
+      continue;
+    }
+    const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
+    if (!can_matter(jacobian.transpose() * pair.now.normal)) continue;
+    assert_int_equal(rows.size(), 2);
+    check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
+    check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
+  }
+}
+
+/// A link that runs away before an obstacle that comes at it keeps its distance; one that is left alone need not.
+void an_obstacle_that_comes_asks_for_more_than_one_that_leaves(void**) {
+  Random random(3);
+  for (int trial = 0; trial < 500; ++trial) {
+    const JointVector q_rad = random.poses(lwa3());
+    const int shape = moving_shape(random);
+    Obstacle obstacle = any_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
+    const Proximity now = measure_pair(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), obstacle);
+    if (now.distance_m > kSettings.range_m) continue;
+    double bounds[3];
+    for (int way = -1; way <= 1; ++way) {
+      Scene scene(q_rad);
+      obstacle.velocity_mps = 0.3 * way * now.normal;
+      scene.add(obstacle);
+      const ConstraintRows rows = scene.rows_of(pair_of(scene.poses, shape, 0, obstacle), true);
+      bounds[way + 1] = rows.size() > 0 ? rows[0].bound : -std::numeric_limits<double>::infinity();  // met anyway
+    }
+    check(bounds[0] <= bounds[1] && bounds[1] <= bounds[2], "trial %d: %g, %g, %g", trial, bounds[0], bounds[1],
+          bounds[2]);
+  }
+}
+
+/// The path is that of the obstacle's point that is nearest now, which therefore stays what it is.
+void rows_of_ways_are_the_slopes_of_the_closest_approach(void**) {
+  Random random(4);
+  int seen = 0;
+  for (int trial = 0; trial < 4500; ++trial) {
+    Scene scene(random.poses(lwa3()));
+    const int shape = moving_shape(random);
+    const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    if (obstacle.is_box() || pair.approach.head_on || pair.approach.axis_distance_m < kKink_m) continue;
+    Obstacle point = sphere_obstacle(pair.now.on_obstacle, obstacle.capsule.radius_m);
+    point.velocity_mps = obstacle.velocity_mps;
+    const JointVector expected = slope(scene.q_rad, [&](const LinkPoses& poses) {
+      const Capsule link = transformed(poses, shape_of(shape));
+      return predict_closest_approach(link, point, measure_pair(link, point), kSettings.pass_horizon_s).distance_m;
+    });
+    const ConstraintRows rows = scene.rows_of(pair);
+    for (const ConstraintRow& row : rows) {
+      if (row.tier != Tier::kPass) continue;
+      check_near_because(row.row, expected, kTolerance, "trial %d, d = %g m", trial, pair.approach.distance_m);
+      ++seen;
+    }
+  }
+  check(seen > 800, "only %d", seen);
+}
+
+/// What comes nearer by turning alone asks for as much as what comes straight at that speed.
+void an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point(void**) {
+  Random random(7);
+  int seen = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const JointVector q_rad = random.poses(lwa3());
+    const int shape = moving_shape(random);
+    Obstacle turning = any_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
+    turning.velocity_mps.setZero();
+    turning.angular_velocity_radps = random.inside(-2, 2);
+    Scene scene(q_rad);
+    const NearPair pair = pair_of(scene.poses, shape, 0, turning);
+    Obstacle straight = turning;
+    straight.velocity_mps = pair.velocity_mps;
+    straight.angular_velocity_radps.setZero();
+    const ConstraintRows rows = scene.rows_of(pair), same = scene.rows_of(pair_of(scene.poses, shape, 0, straight));
+    assert_int_equal(rows.size(), same.size());
+    for (int i = 0; i < rows.size(); ++i) check_near_because(rows[i].bound, same[i].bound, 1e-9, "trial %d", trial);
+    seen += rows.size() > 0 && std::abs(pair.velocity_mps.dot(pair.now.normal)) > 0.01;
+  }
+  check(seen > 100, "only %d", seen);
+}
+
+void rows_of_links_against_each_other_are_their_slopes(void**) {
+  const Pairs pairs = find_self_pairs(lwa3());
+  Random random(5);
+  int seen = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.poses(lwa3()));
+    for (const auto& [a, b] : pairs) {
+      const auto distance = [a = a, b = b](const LinkPoses& poses) {
+        return measure_pair(transformed(poses, shape_of(a)), transformed(poses, shape_of(b)));
+      };
+      const Proximity now = distance(scene.poses);
+      if (now.axis_distance_m < kKink_m) continue;
+      scene.self_pairs = {{a, b}};
+      const ConstraintRows rows = scene.rows(range_of(1e9));
+      const JointVector expected =
+          slope(scene.q_rad, [&](const LinkPoses& poses) { return distance(poses).distance_m; });
+      if (!can_matter(expected)) continue;
+      assert_int_equal(rows.size(), 1);
+      check_near_because(rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
+      check_near(rows[0].bound, hard_bound(rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
+      ++seen;
+    }
+  }
+  check(seen > 600, "only %d", seen);
+}
+
+double worst_shortfall(const ConstraintRow& row, const VelocityRange& range) {
+  double worst = row.bound;
+  for (int i = 0; i < 7; ++i) worst -= row.row[i] * (row.row[i] > 0.0 ? range.lower_radps[i] : range.upper_radps[i]);
+  return worst;
+}
+
+bool same(const ConstraintRow& a, const ConstraintRow& b) {
+  return a.row == b.row && a.bound == b.bound && a.tier == b.tier && a.other_bound == b.other_bound;
+}
+
+/// All rows of all pairs, however many they are.
+std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& near) {
+  std::vector<ConstraintRow> all;
+  for (const NearPair& pair : near)
+    for (const ConstraintRow& row : scene.rows_of(pair)) all.push_back(row);
+  return all;
+}
+
+/// Those that some velocity in the range does not meet; of too many the most pressing. Says whether they were too many.
+bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kept, const VelocityRange& range,
+                int trial) {
+  std::vector<ConstraintRow> mattering;
+  for (const ConstraintRow& row : all)
+    if (worst_shortfall(row, range) > 0.0) mattering.push_back(row);
+  assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(mattering.size())));
+  double least_kept = 1e9, most_left_out = 0.0;
+  for (const ConstraintRow& row : mattering) {
+    const bool is_kept =
+        std::any_of(kept.begin(), kept.end(), [&](const ConstraintRow& one) { return same(one, row); });
+    if (is_kept)
+      least_kept = std::min(least_kept, worst_shortfall(row, range));
+    else
+      most_left_out = std::max(most_left_out, worst_shortfall(row, range));
+  }
+  check(most_left_out <= least_kept + 1e-12, "trial %d: left out %g, kept %g", trial, most_left_out, least_kept);
+  return mattering.size() > kMaxRows;
+}
+
+VelocityRange random_range(Random& random, double largest_radps) {
+  const JointVector middle = random.joints(7, -largest_radps, largest_radps);
+  return {middle - random.joints(7, 0, 0.5), middle + random.joints(7, 0, 0.5)};
+}
+
+void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(void**) {
+  Random random(6);
+  int crowded = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Scene scene(random.poses(lwa3()));
+    scene.last_radps = random.joints(7, -2, 2);
+    std::vector<NearPair> near;
+    for (int i = random.index(kMaxNear + 1); i > 0; --i) {
+      const int shape = moving_shape(random);
+      const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+      scene.add(obstacle);
+      near.push_back(pair_of(scene.poses, shape, scene.set->count - 1, obstacle));
+    }
+    const std::vector<ConstraintRow> all = all_rows(scene, near);
+    std::vector<ConstraintRow> hard;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(hard),
+                 [](const ConstraintRow& row) { return row.tier == Tier::kHard; });
+    scene.clearance.near.clear();
+    for (const NearPair& pair : near) scene.clearance.near.add(pair);
+    // The velocities of the step may be among those that last, or others: a joint that is too fast for its limit.
+    const VelocityRange sustainable = random_range(random, 2.0),
+                        within{0.5 * sustainable.lower_radps + 0.5 * sustainable.upper_radps, sustainable.upper_radps};
+    const VelocityRange range = random.chance(0.5) ? within : random_range(random, 2.0);
+    const RowSets rows = scene.row_sets(sustainable, range);
+    crowded += check_kept(all, rows.plan, sustainable, trial);
+    check_kept(hard, rows.step, range, trial);
+  }
+  check(crowded > 20, "only %d", crowded);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(rows_of_distances_are_their_slopes),
+      cmocka_unit_test(the_bounds_of_distances_are_barriers),
+      cmocka_unit_test(an_obstacle_that_comes_asks_for_more_than_one_that_leaves),
+      cmocka_unit_test(rows_of_ways_are_the_slopes_of_the_closest_approach),
+      cmocka_unit_test(an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point),
+      cmocka_unit_test(rows_of_links_against_each_other_are_their_slopes),
+      cmocka_unit_test(only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

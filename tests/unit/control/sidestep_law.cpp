@@ -1,0 +1,166 @@
+#include "firmware/control/sidestep_law.h"
+
+#include "tests/support/check.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::home_rad;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+const SidestepGains kGains;
+
+NominalCommand wish_at(const JointVector& q_rad, const Target& target) {
+  const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
+  const JointVector at_rest = JointVector::Zero(q_rad.size());
+  const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
+  return sidestep_law(kGains, {lwa3(), poses, jacobian, q_rad, at_rest, target, ObstacleView{}, Clearance{}},
+                      away_from_limits(kGains, lwa3().limits, q_rad));
+}
+
+/// A target that the tool has already reached.
+Target target_at(const JointVector& q_rad, bool with_orientation) {
+  const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
+  Target target;
+  target.position_m = poses.tool_position;
+  target.tracks_orientation = with_orientation;
+  target.orientation = Quaternion(poses.tool_rotation);
+  return target;
+}
+
+double smallest_singular_value(const JointVector& q_rad, int rows) {
+  const TaskJacobian jacobian = tool_jacobian(forward_kinematics(lwa3(), q_rad), rows);
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues()[rows - 1];
+}
+
+/// A posture in which the law does not damp.
+JointVector regular_posture(Random& random, int rows) {
+  JointVector q_rad = random.poses(lwa3());
+  while (smallest_singular_value(q_rad, rows) < kGains.sigma_0) q_rad = random.poses(lwa3());
+  return q_rad;
+}
+
+TaskVector tool_motion(const JointVector& q_rad, const NominalCommand& wish, int rows) {
+  return tool_jacobian(forward_kinematics(lwa3(), q_rad), rows) * wish.velocity_radps;
+}
+
+void at_a_still_target_no_wish_moves_the_tool(void**) {
+  Random random(1);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const bool rotated = trial % 2;
+    const int rows = rotated ? 6 : 3;
+    const JointVector q_rad = regular_posture(random, rows);
+    const NominalCommand wish = wish_at(q_rad, target_at(q_rad, rotated));
+    check_near(wish.damping, 0.0, 0.0);
+    check_near_because(tool_motion(q_rad, wish, rows), TaskVector(TaskVector::Zero(rows)), 1e-9, "trial %d", trial);
+  }
+}
+
+void at_a_moving_target_the_tool_moves_with_it(void**) {
+  Random random(2);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const bool rotated = trial % 2;
+    const int rows = rotated ? 6 : 3;
+    const JointVector q_rad = regular_posture(random, rows);
+    Target target = target_at(q_rad, rotated);
+    target.velocity_mps = random.inside(-2, 2);  // its own speed is not limited
+    target.angular_velocity_radps = random.inside(-2, 2);
+    TaskVector expected(rows);
+    expected.head<3>() = target.velocity_mps;
+    if (rotated) expected.tail<3>() = target.angular_velocity_radps;
+    check_near_because(tool_motion(q_rad, wish_at(q_rad, target), rows), expected, 1e-9, "trial %d", trial);
+  }
+}
+
+void toward_a_target_the_tool_goes_straight_and_no_faster_than_allowed(void**) {
+  Random random(3);
+  for (int trial = 0; trial < 500; ++trial) {
+    const JointVector q_rad = regular_posture(random, 3);
+    Target target = target_at(q_rad, false);
+    const double distance_m = random.uniform(0.01, 0.5);
+    const Vector3 way = random.direction();
+    target.position_m += distance_m * way;
+    const NominalCommand wish = wish_at(q_rad, target);
+    const double speed_mps = std::min(kGains.v_max_mps, kGains.k_pos_per_s * distance_m);
+    check_near_because(tool_motion(q_rad, wish, 3), TaskVector(speed_mps * way), 1e-9, "trial %d", trial);
+    assert_int_equal(wish.task_speed_limited, kGains.k_pos_per_s * distance_m > kGains.v_max_mps);
+  }
+}
+
+void toward_an_orientation_the_tool_turns_the_shortest_way(void**) {
+  Random random(4);
+  for (int trial = 0; trial < 500; ++trial) {
+    const JointVector q_rad = regular_posture(random, 6);
+    Target target = target_at(q_rad, true);
+    const Vector3 axis = random.direction();
+    const double angle_rad = random.uniform(0.0, 3.0);
+    target.orientation = Quaternion(Eigen::AngleAxisd(angle_rad, axis)) * target.orientation;
+    if (trial % 2) target.orientation.coeffs() *= -1.0;  // the same orientation
+    TaskVector expected = TaskVector::Zero(6);
+    expected.tail<3>() = kGains.k_ori_per_s * angle_rad * axis;
+    check_near_because(tool_motion(q_rad, wish_at(q_rad, target), 6), expected, 1e-6, "trial %d", trial);
+  }
+}
+
+/// Straight through the singular postures: stretched out, and home, where the wrist is straight.
+void through_singular_postures_the_wish_changes_without_a_jump(void**) {
+  Random random(5);
+  for (int trial = 0; trial < 40; ++trial) {
+    const JointVector through_rad = trial % 2 ? home_rad() : JointVector(JointVector::Zero(7));
+    const JointVector way = random.joints(7, -1, 1).normalized();
+    Target target = target_at(through_rad, trial % 4 > 1);
+    target.position_m += random.inside(-0.3, 0.3);
+    target.velocity_mps = random.inside(-0.5, 0.5);
+    const double step_rad = 1e-4, steepest_per_s = 2000.0;  // v / lambda_0^2 = 400/s for each m/s
+    JointVector last_radps;
+    for (int i = -1000; i <= 1000; ++i) {
+      const JointVector q_rad = through_rad + i * step_rad * way;
+      const JointVector nominal_radps = wish_at(q_rad, target).velocity_radps;
+      check(nominal_radps.allFinite() && nominal_radps.norm() < 100.0, "trial %d, step %d: %g rad/s", trial, i,
+            nominal_radps.norm());
+      if (i > -1000)
+        check((nominal_radps - last_radps).norm() <= steepest_per_s * step_rad, "trial %d, step %d: jumps by %g rad/s",
+              trial, i, (nominal_radps - last_radps).norm());
+      last_radps = nominal_radps;
+    }
+  }
+}
+
+/// Largest share of its way from the middle of its range that a joint has gone toward a limit.
+double most_extreme(const JointVector& q_rad) {
+  const JointLimits& limits = lwa3().limits;
+  return q_rad.cwiseQuotient(limits.upper_rad).cwiseAbs().maxCoeff();
+}
+
+void joints_near_their_limits_come_back_while_the_tool_stays(void**) {
+  Random random(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    JointVector q_rad = 0.5 * random.poses(lwa3());
+    const int joint = 2 * random.index(4);  // rolls: the tool can stay while they turn
+    q_rad[joint] = 0.99 * lwa3().limits.upper_rad[joint];
+    if (smallest_singular_value(q_rad, 3) < 2.0 * kGains.sigma_0) continue;
+    const Target target = target_at(q_rad, false);
+    const double before = most_extreme(q_rad);
+    for (int cycle = 0; cycle < 500; ++cycle) q_rad += 0.01 * wish_at(q_rad, target).velocity_radps;
+    check(most_extreme(q_rad) < before - 0.02, "trial %d: from %g to %g of the range", trial, before,
+          most_extreme(q_rad));
+    check_near_because(forward_kinematics(lwa3(), q_rad).tool_position, target.position_m, 1e-3, "trial %d", trial);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(at_a_still_target_no_wish_moves_the_tool),
+      cmocka_unit_test(at_a_moving_target_the_tool_moves_with_it),
+      cmocka_unit_test(toward_a_target_the_tool_goes_straight_and_no_faster_than_allowed),
+      cmocka_unit_test(toward_an_orientation_the_tool_turns_the_shortest_way),
+      cmocka_unit_test(through_singular_postures_the_wish_changes_without_a_jump),
+      cmocka_unit_test(joints_near_their_limits_come_back_while_the_tool_stays),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,238 @@
+#include "firmware/control/supervisor.h"
+
+#include <functional>
+#include <set>
+#include <vector>
+
+#include "tests/support/check.h"
+
+using namespace sidestep;
+
+namespace {
+
+constexpr int kFacts = 13;
+static_assert(sizeof(InputStatus) == kFacts, "a new fact belongs into facts_of()");
+const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
+
+InputStatus facts_of(unsigned bits) {
+  InputStatus status;
+  bool* const all[kFacts] = {&status.arm_known,
+                             &status.arm_fresh,
+                             &status.arm_lost,
+                             &status.arm_consistent,
+                             &status.arm_starting,
+                             &status.arm_inconsistent,
+                             &status.obstacles_known,
+                             &status.obstacles_fresh,
+                             &status.target_known,
+                             &status.target_fresh,
+                             &status.late,
+                             &status.stop,
+                             &status.foreign_command};
+  for (int i = 0; i < kFacts; ++i) *all[i] = bits >> i & 1;
+  return status;
+}
+
+/// Facts that observe() can produce; the others are asked too, but only for what must hold of any.
+bool possible(const InputStatus& f) {
+  if (f.arm_fresh && (!f.arm_known || f.arm_lost)) return false;
+  if ((f.arm_lost || f.arm_inconsistent || f.arm_consistent) && !f.arm_known) return false;
+  if (f.target_fresh && !f.target_known) return false;
+  return !(f.obstacles_fresh && !f.obstacles_known);
+}
+
+using Property = std::function<bool(const Supervision& last, const InputStatus&, const Supervision& next)>;
+
+/// Holds a property against every mode, fault and combination of facts.
+void check_always(const char* name, const Property& property, bool only_possible = false) {
+  for (const Mode mode : kModes) {
+    for (unsigned bits = 0; bits < 1u << kFacts; ++bits) {
+      const InputStatus status = facts_of(bits);
+      if (only_possible && !possible(status)) continue;
+      for (const Fault fault : {Fault::kArmStateLost, Fault::kArmStateInconsistent, Fault::kNotFinite}) {
+        const Supervision last{mode, mode == Mode::kFault ? fault : Fault::kNone, "before"};
+        const Supervision next = next_mode(last, status);
+        check(property(last, status, next), "%s: mode %d, facts 0x%x -> mode %d, fault %d", name,
+              static_cast<int>(mode), bits, static_cast<int>(next.mode), static_cast<int>(next.fault));
+      }
+    }
+  }
+}
+
+bool may_move(Mode mode) {
+  return mode == Mode::kHold || mode == Mode::kTrack;
+}
+
+void tracking_needs_everything_fresh(void**) {
+  check_always("track", [](const auto&, const InputStatus& f, const auto& next) {
+    return next.mode != Mode::kTrack || (f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
+                                         f.target_known && f.target_fresh && !f.late && !f.stop && !f.foreign_command);
+  });
+}
+
+void what_stood_still_does_not_start_on_old_obstacles(void**) {
+  check_always("start", [](const auto& last, const InputStatus& f, const auto& next) {
+    const bool stood = last.mode == Mode::kWait || last.mode == Mode::kFault;
+    return !stood || f.obstacles_fresh || !may_move(next.mode);
+  });
+}
+
+void a_wish_to_stop_never_leads_to_moving(void**) {
+  check_always("stop",
+               [](const auto&, const InputStatus& f, const auto& next) { return !f.stop || !may_move(next.mode); });
+}
+
+void beside_another_controller_nothing_moves(void**) {
+  check_always("rival", [](const auto&, const InputStatus& f, const auto& next) {
+    return !f.foreign_command || !may_move(next.mode);
+  });
+}
+
+void nothing_moves_without_a_fresh_arm_state(void**) {
+  check_always(
+      "arm", [](const auto&, const InputStatus& f, const auto& next) { return f.arm_fresh || !may_move(next.mode); },
+      true);
+}
+
+void nothing_starts_without_consistent_arm_states_and_known_obstacles(void**) {
+  check_always("start", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    const bool starts = (last.mode == Mode::kWait || last.mode == Mode::kFault) && may_move(next.mode);
+    return !starts || (f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && f.obstacles_known);
+  });
+}
+
+void a_start_is_always_a_hold(void**) {
+  check_always("hold first", [](const Supervision& last, const auto&, const auto& next) {
+    return (last.mode != Mode::kWait && last.mode != Mode::kFault) || next.mode != Mode::kTrack;
+  });
+}
+
+void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
+  check_always("fault", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    if (last.mode == Mode::kWait) return next.fault == Fault::kNone;
+    if (f.arm_inconsistent) return next.mode == Mode::kFault && next.fault == Fault::kArmStateInconsistent;
+    if (f.arm_lost) return next.mode == Mode::kFault && next.fault == Fault::kArmStateLost;
+    return last.mode == Mode::kFault || next.mode != Mode::kFault;
+  });
+}
+
+void a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh(void**) {
+  check_always("latched", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    if (last.mode != Mode::kFault || f.arm_inconsistent || f.arm_lost) return true;
+    const bool obstacles = f.obstacles_fresh || !f.obstacles_known;  // without any it waits
+    const bool ready = f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && obstacles;
+    if (ready && !f.stop && !f.foreign_command) return next.mode != Mode::kFault;
+    return next.mode == Mode::kFault && next.fault == last.fault;
+  });
+}
+
+void only_a_fault_has_a_fault(void**) {
+  check_always("named", [](const auto&, const auto&, const auto& next) {
+    return (next.mode == Mode::kFault) == (next.fault != Fault::kNone);
+  });
+}
+
+void old_obstacles_and_lateness_brake(void**) {
+  check_always("brake", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    if (last.mode == Mode::kWait || last.mode == Mode::kFault || f.arm_inconsistent || f.arm_lost) return true;
+    const bool reason = f.stop || f.foreign_command || !f.arm_fresh || !f.obstacles_fresh || f.late;
+    return reason == (next.mode == Mode::kBrake);
+  });
+}
+
+void without_a_fresh_target_it_holds(void**) {
+  check_always("hold", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    const bool calm = f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
+                      !f.late && !f.stop && !f.foreign_command;
+    if (last.mode == Mode::kWait || last.mode == Mode::kFault || !calm) return true;
+    return next.mode == (f.target_known && f.target_fresh ? Mode::kTrack : Mode::kHold);
+  });
+}
+
+void it_never_falls_back_to_waiting_once_it_ran(void**) {
+  check_always("wait", [](const Supervision& last, const InputStatus& f, const auto& next) {
+    const bool from_fault = last.mode == Mode::kFault && !f.obstacles_known;
+    return next.mode != Mode::kWait || last.mode == Mode::kWait || from_fault;
+  });
+}
+
+void every_mode_can_be_reached_and_says_so_in_words(void**) {
+  std::set<Mode> reached;
+  std::set<std::string> messages;
+  check_always("words", [&](const auto&, const auto&, const auto& next) {
+    reached.insert(next.mode);
+    messages.insert(next.message);
+    return next.message && *next.message && std::string(next.message) != "before";
+  });
+  assert_int_equal(reached.size(), 5);
+  check(messages.size() >= 15, "%zu messages", messages.size());
+}
+
+/// The life of a run, step by step.
+void an_ordinary_run(void**) {
+  InputStatus f;
+  Supervision now;
+  const auto then = [&](Mode mode, const char* word) {
+    now = next_mode(now, f);
+    check(now.mode == mode && std::string(now.message).find(word) != std::string::npos,
+          "mode %d, '%s', expected %d, '%s'", static_cast<int>(now.mode), now.message, static_cast<int>(mode), word);
+  };
+  then(Mode::kWait, "first arm state");
+  f.arm_known = f.arm_fresh = true;
+  then(Mode::kWait, "consistent");
+  f.arm_consistent = true;
+  then(Mode::kWait, "obstacle");
+  f.obstacles_known = f.obstacles_fresh = true;
+  then(Mode::kHold, "holding");
+  then(Mode::kHold, "no target");
+  f.target_known = f.target_fresh = true;
+  then(Mode::kTrack, "tracking");
+  f.target_fresh = false;
+  then(Mode::kHold, "target is too old");
+  f.obstacles_fresh = false;
+  then(Mode::kBrake, "obstacles are too old");
+  f.obstacles_fresh = f.target_fresh = true;
+  then(Mode::kTrack, "tracking");
+  f.late = true;
+  then(Mode::kBrake, "skipped");
+  f.late = false;
+  f.arm_fresh = false;
+  then(Mode::kBrake, "arm state is too old");
+  f.arm_lost = true;
+  f.arm_consistent = false;
+  then(Mode::kFault, "no arm state");
+  f.arm_lost = false;
+  f.arm_fresh = true;
+  then(Mode::kFault, "consistent");
+  f.arm_consistent = true;
+  then(Mode::kHold, "holding");
+  f.foreign_command = true;
+  then(Mode::kBrake, "another controller");
+  f.foreign_command = false;
+  then(Mode::kTrack, "tracking");
+  f.stop = true;
+  then(Mode::kBrake, "stop");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(tracking_needs_everything_fresh),
+      cmocka_unit_test(what_stood_still_does_not_start_on_old_obstacles),
+      cmocka_unit_test(a_wish_to_stop_never_leads_to_moving),
+      cmocka_unit_test(beside_another_controller_nothing_moves),
+      cmocka_unit_test(nothing_moves_without_a_fresh_arm_state),
+      cmocka_unit_test(nothing_starts_without_consistent_arm_states_and_known_obstacles),
+      cmocka_unit_test(a_start_is_always_a_hold),
+      cmocka_unit_test(a_lost_or_contradictory_arm_is_a_fault_of_that_name),
+      cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh),
+      cmocka_unit_test(only_a_fault_has_a_fault),
+      cmocka_unit_test(old_obstacles_and_lateness_brake),
+      cmocka_unit_test(without_a_fresh_target_it_holds),
+      cmocka_unit_test(it_never_falls_back_to_waiting_once_it_ran),
+      cmocka_unit_test(every_mode_can_be_reached_and_says_so_in_words),
+      cmocka_unit_test(an_ordinary_run),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

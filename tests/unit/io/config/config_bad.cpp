@@ -1,0 +1,228 @@
+#include "firmware/io/config/config.h"
+#include "tests/support/check.h"
+#include "tests/support/random.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep;
+using test::message_of;
+using test::one_line_with;
+using test::scratch_file;
+using test::text_of;
+
+namespace {
+
+const char kRobot[] = "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}\n";
+
+std::string said(const std::string& text) {
+  const std::string file = scratch_file("config.yaml", text);
+  return message_of([&] { load_config(file, {}); });
+}
+
+/// One line of a table: goes on with the others and counts 1 where it is wrong.
+int complain_unless(bool right, const char* yaml, const std::string& message) {
+  if (!right) print_error("%s -> '%s'\n", yaml, message.c_str());
+  return !right;
+}
+
+void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
+  const struct {
+    const char* yaml;
+    const char* culprit;
+  } cases[] = {
+      // unknown keys
+      {"lawn: paper", "lawn"},
+      {"paper: {k_pos: 1}", "paper.k_pos"},
+      {"control: {rate: 100}", "control.rate"},
+      {"shield: {enable: true}", "shield.enable"},
+      {"channels: {targets: T}", "channels.targets"},
+      {"obstacles: {[1, 2]: 3}", "obstacles"},
+      // the wrong kind
+      {"law: 7", "law"},
+      {"law: [paper]", "law"},
+      {"dialect: kuka", "dialect"},
+      {"paper: 3", "paper"},
+      {"paper: [1, 2]", "paper"},
+      {"paper: {k_pos_per_s2: fast}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: [1]}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: {}}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: 1.0.0}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: \"\"}", "paper.k_pos_per_s2"},
+      {"paper: {tool_velocity: guessed}", "paper.tool_velocity"},
+      {"obstacles: {wait_for_first: perhaps}", "obstacles.wait_for_first"},
+      {"obstacles: {wait_for_first: 1}", "obstacles.wait_for_first"},
+      {"channels: {target: [A]}", "channels.target"},
+      {"channels: {target: \"\"}", "channels.target"},
+      {"neighbours: {listen: A}", "neighbours.listen"},
+      {"neighbours: {publish: A, listen: [B, A]}", "neighbours.listen"},
+      {"neighbours: {listen: [B, B]}", "neighbours.listen"},
+      {"neighbours: {listen: [OBSTACLES]}", "neighbours.listen"},
+      {"neighbours: {publish: ARM_COMMAND}", "neighbours.publish"},
+      {"neighbours: {listen: [A, \"B\\nC\"]}", "neighbours.listen"},
+      {"neighbours: {listen: [A, B, C, D, E, F, G, H, I, J, K, L, M, N, O, P, Q]}", "neighbours.listen"},
+      {"neighbours: {listen: [A_NAME_THAT_IS_LONGER_THAN_THE_SIXTY_THREE_BYTES_THAT_LCM_CAN_SEND]}",
+       "neighbours.listen"},
+      {"channels: {target: X, obstacles: X}", "channels.obstacles"},
+      {"neighbours: {listen: [A]}\nobstacles: {wait_for_first: false}", "neighbours.listen"},
+      {"neighbours: {base_position_m: [1, 2]}", "neighbours.base_position_m"},
+      {"neighbours: {base_position_m: [1, 2, 1e308]}", "neighbours.base_position_m"},
+      {"neighbours: {base_rpy_rad: [1, 2, .inf]}", "neighbours.base_rpy_rad"},
+      // out of range
+      {"paper: {k_pos_per_s2: .nan}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: .inf}", "paper.k_pos_per_s2"},
+      {"paper: {k_pos_per_s2: -1}", "paper.k_pos_per_s2"},
+      {"paper: {rho_min_m: 0}", "paper.rho_min_m"},
+      {"paper: {lambda_n: 0}", "paper.lambda_n"},
+      {"paper: {d_m_m: -0.1}", "paper.d_m_m"},
+      {"paper: {d_1_m: 0.05}", "paper.d_2_m"},
+      {"paper: {d_2_m: 0.3}", "paper.d_2_m"},
+      {"control: {rate_hz: 0}", "control.rate_hz"},
+      {"control: {rate_hz: 1e9}", "control.rate_hz"},
+      {"blackbox: {seconds: 0}", "blackbox.seconds"},
+      {"foresight: {seed: 1.7}", "foresight.seed"},
+      {"blackbox: {seconds: 61}", "blackbox.seconds"},
+      {"timeouts: {coast_s: 11}", "timeouts.coast_s"},
+      {"shield: {pass_horizon_s: 11}", "shield.pass_horizon_s"},
+      {"blackbox: {file: log}", "blackbox.file"},
+      {"control: {rate_hz: -100}", "control.rate_hz"},
+      {"control: {following_error_rad: 0}", "control.following_error_rad"},
+      {"timeouts: {target_s: 0}", "timeouts.target_s"},
+      {"timeouts: {arm_state_s: 0.2}", "timeouts.arm_state_lost_s"},
+      {"timeouts: {consistent_s: -1}", "timeouts.consistent_s"},
+      {"obstacles: {speed_bound_mps: -1}", "obstacles.speed_bound_mps"},
+      {"channels: {target: A_NAME_THAT_IS_LONGER_THAN_THE_SIXTY_THREE_BYTES_THAT_LCM_CAN_SEND}", "channels.target"},
+      // limits
+      {"limits: {velocity_radps: [1, 2, 3]}", "limits.velocity_radps"},
+      {"limits: {velocity_radps: [1, 2, 3, 4, 5, 6, 7, 8]}", "limits.velocity_radps"},
+      {"limits: {velocity_radps: [1, 2, 3, 4, 5, 6, x]}", "limits.velocity_radps"},
+      {"limits: {velocity_radps: [1, 2, 3, 4, 5, 6, [7]]}", "limits.velocity_radps"},
+      {"limits: {velocity_radps: .nan}", "limits.velocity_radps"},
+      {"limits: {velocity_radps: 0}", "velocity"},
+      {"limits: {velocity_radps: .inf}", "velocity"},
+      {"limits: {velocity_radps: 1e300}", "velocity"},
+      {"limits: {acceleration_radps2: 1e300}", "acceleration"},
+      {"limits: {acceleration_radps2: -10}", "acceleration"},
+      {"limits: {acceleration_radps2: .inf}", "acceleration"},
+      {"limits: {lower_rad: 2, upper_rad: 1}", "lower"},
+      {"limits: {upper_rad: [6, -2, 6, 2, 6, 2, 6]}", "joint_2"},
+      // surroundings
+      {"surroundings: table", "surroundings"},
+      {"surroundings: [table]", "surroundings[0]"},
+      {"surroundings: [{position_m: [0, 0, 0]}]", "surroundings[0].shape"},
+      {"surroundings: [{shape: cone, position_m: [0, 0, 0]}]", "surroundings[0].shape"},
+      {"surroundings: [{shape: sphere, radius_m: 1}]", "surroundings[0].position_m"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0], radius_m: 1}]", "surroundings[0].position_m"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, .nan], radius_m: 1}]", "surroundings[0].position_m"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 0]}]", "surroundings[0].radius_m"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 0], radius_m: 0}]", "surroundings[0].radius_m"},
+      {"surroundings: [{shape: capsule, position_m: [0, 0, 0], radius_m: 1}]", "surroundings[0].length_m"},
+      {"surroundings: [{shape: box, position_m: [0, 0, 0]}]", "surroundings[0].edges_m"},
+      {"surroundings: [{shape: box, position_m: [0, 0, 0], edges_m: [1, 1, -1]}]", "surroundings[0].edges_m"},
+      {"surroundings: [{shape: box, position_m: [0, 0, 0], edges_m: [1, 1, 1], quaternion: [1, 1, 0, 0]}]",
+       "surroundings[0].quaternion"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 0], radius_m: 1, edges_m: [1, 1, 1]}]",
+       "surroundings[0].edges_m"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 1], radius_m: 1}, {}]", "surroundings[1].shape"},
+      // twice
+      {"law: paper\nlaw: paper", "law"},
+      {"paper: {d_1_m: 0.3, d_1_m: 0.3}", "paper.d_1_m"},
+      {"timeouts: {}\nages: {}", "timeouts"},
+      {"---\nlaw: paper", "second document"},
+      {"...\n{law: paper}", "second document"},
+  };
+  int wrong = 0;
+  for (const auto& bad : cases) {
+    const std::string message = said(std::string(kRobot) + bad.yaml + "\n");
+    wrong += complain_unless(one_line_with(message, {"config.yaml", bad.culprit}), bad.yaml, message);
+  }
+  assert_int_equal(wrong, 0);
+}
+
+void a_bad_robot_is_refused_with_one_line(void**) {
+  const struct {
+    const char* yaml;
+    const char* culprit;
+  } cases[] = {
+      {"", "robot.urdf"},
+      {"robot: {base: base_link, tip: tool}", "robot.urdf"},
+      {"robot: {urdf: urdf/lwa3.urdf, tip: tool}", "robot.base"},
+      {"robot: {urdf: urdf/lwa3.urdf, base: base_link}", "robot.tip"},
+      {"robot: {urdf: urdf/none.urdf, base: base_link, tip: tool}", "urdf/none.urdf"},
+      {"robot: {urdf: urdf/lwa3.urdf, base: elbow, tip: tool}", "elbow"},
+      {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: hook}", "hook"},
+      {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool, tool: 1}", "robot.tool"},
+      {"robot: urdf/lwa3.urdf", "robot"},
+      {"robot: {urdf: \"a\\nb\", base: base_link, tip: tool}", "robot.urdf"},
+      {"robot: {urdf: [], base: base_link, tip: tool}", "robot.urdf"},
+      {"robot: {urdf: tests/data/arm6.urdf, base: foot, tip: tip}\ndialect: iiwa", "dialect"},
+  };
+  int wrong = 0;
+  for (const auto& bad : cases) {
+    const std::string message = said(bad.yaml);
+    wrong += complain_unless(one_line_with(message, {bad.culprit}), bad.yaml, message);
+  }
+  assert_int_equal(wrong, 0);
+}
+
+void a_name_too_long_for_a_file_is_no_file(void**) {
+  const std::string name(5000, 'u');
+  assert_true(
+      one_line_with(said("robot: {urdf: " + name + ", base: base_link, tip: tool}"), {name + ": cannot be read"}));
+}
+
+void what_is_no_yaml_is_refused_with_one_line(void**) {
+  const std::string zeros(300, '\0'), deep(20000, '['), braces(20000, '{');
+  for (const std::string& text :
+       {std::string("robot: [1, 2"), std::string("a: b: c"), std::string("\t- x"), std::string("- a\n- b"),
+        std::string("just words"), std::string("%YAML 9\n"), std::string("&a *a"), zeros,
+        std::string("\xff\xfe\x00x", 4), std::string("*unknown"), std::string("? [a"), deep, braces}) {
+    const std::string message = said(text);
+    check(one_line_with(message, {"config.yaml"}), "%.40s -> '%.200s'", text.c_str(), message.c_str());
+  }
+}
+
+void a_file_that_cannot_be_read_is_named(void**) {
+  const std::string missing = message_of([] { load_config("no/such/file.yaml", {}); });
+  check(one_line_with(missing, {"no/such/file.yaml"}), "'%s'", missing.c_str());
+  const std::string folder = message_of([] { load_config("firmware/config", {}); });
+  check(one_line_with(folder, {"firmware/config: cannot be read"}), "'%s'", folder.c_str());
+  const std::string endless = message_of([] { load_config("/dev/zero", {}); });
+  check(one_line_with(endless, {"/dev/zero", "larger"}), "'%s'", endless.c_str());
+}
+
+void a_truncated_config_never_crashes(void**) {
+  const std::string good = text_of("firmware/config/lwa3.yaml");
+  int loaded = 0;
+  for (size_t length = 0; length < good.size(); ++length) {
+    const std::string message = said(good.substr(0, length));
+    check(message.empty() || one_line_with(message, {}), "%zu bytes: '%s'", length, message.c_str());
+    loaded += message.empty();
+  }
+  check(loaded > 100, "%d prefixes are configurations of their own", loaded);
+}
+
+void a_scrambled_config_never_crashes(void**) {
+  const std::string good = text_of("firmware/config/lwa3.yaml");
+  test::Random random(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::string text = good;
+    for (int change = random.index(5); change >= 0; --change)
+      text[static_cast<size_t>(random.index(static_cast<int>(text.size())))] = static_cast<char>(random.bits());
+    const std::string message = said(text);
+    check(message.empty() || one_line_with(message, {}), "trial %d: '%s'", trial, message.c_str());
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_bad_config_is_refused_with_one_line_naming_file_and_key),
+      cmocka_unit_test(a_bad_robot_is_refused_with_one_line),
+      cmocka_unit_test(a_name_too_long_for_a_file_is_no_file),
+      cmocka_unit_test(what_is_no_yaml_is_refused_with_one_line),
+      cmocka_unit_test(a_file_that_cannot_be_read_is_named),
+      cmocka_unit_test(a_truncated_config_never_crashes),
+      cmocka_unit_test(a_scrambled_config_never_crashes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,130 @@
+// What the base link of an arm is fixed to: a pedestal, a torso, a table.
+
+#include <algorithm>
+
+#include "firmware/model/load/self_pairs.h"
+#include "host/sim/truth.h"
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+#include "tests/support/scratch.h"
+
+using namespace sidestep;
+using test::Random;
+
+namespace {
+
+const Vector3 kPlate_m(0.7, 0.6, 0.04), kPlatePlace_m(-0.8, 0.0, 0.35);
+
+/// The LWA3 on a torso that is half a metre below its base, is turned by a right angle and carries a plate beside the
+/// arm and another arm.
+std::string on_a_torso() {
+  const std::string torso = R"(
+  <link name="torso"><collision><geometry><box size="0.3 0.2 0.2"/></geometry></collision></link>
+  <joint name="mount" type="fixed"><origin xyz="0 0 0.5" rpy="0 0 1.5707963267948966"/>
+    <parent link="torso"/><child link="base_link"/></joint>
+  <link name="plate"><collision><geometry><box size="0.6 0.7 0.04"/></geometry></collision></link>
+  <joint name="bracket" type="fixed"><origin xyz="0 -0.8 0.85"/><parent link="torso"/><child link="plate"/></joint>
+  <link name="other_arm"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="other" type="continuous"><origin xyz="0 1 0"/><parent link="torso"/><child link="other_arm"/></joint>
+</robot>)";
+  return test::scratch_file("torso.urdf", test::replaced(test::text_of("urdf/lwa3.urdf"), "</robot>", torso));
+}
+
+std::vector<LinkShape> shapes_of(const Arm& arm, const std::string& link) {
+  std::vector<LinkShape> found;
+  std::copy_if(arm.shapes.begin(), arm.shapes.end(), std::back_inserter(found),
+               [&](const LinkShape& shape) { return shape.link == link; });
+  return found;
+}
+
+void a_torso_and_what_is_fixed_to_it_are_there_but_not_its_other_arm(void**) {
+  const Arm arm = load_arm(on_a_torso(), "base_link", "tool");
+  for (const char* link : {"torso", "plate"}) {
+    const auto shapes = shapes_of(arm, link);
+    assert_false(shapes.empty());
+    for (const LinkShape& shape : shapes) assert_true(shape.body == 0 && shape.below_arm);
+  }
+  assert_true(shapes_of(arm, "other_arm").empty());
+  for (const LinkShape& shape : shapes_of(arm, "base_link")) assert_false(shape.below_arm);
+  assert_int_equal(arm.shapes.size() - shapes_of(arm, "torso").size() - shapes_of(arm, "plate").size(),
+                   test::lwa3().shapes.size());
+}
+
+/// The frames are the base link's; and a flat box does not take the room above it.
+void a_plate_is_covered_where_it_is_and_little_more(void**) {
+  const auto shapes = shapes_of(load_arm(on_a_torso(), "base_link", "tool"), "plate");
+  const auto distance_m = [&](const Vector3& point) {
+    double least_m = 1e9;
+    for (const LinkShape& shape : shapes) {
+      const Capsule& c = shape.capsule_body;
+      least_m = std::min(least_m, (nearest_on_segment(c.start, c.end, point) - point).norm() - c.radius_m);
+    }
+    return least_m;
+  };
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 inside = random.inside(-0.5, 0.5);
+    check(distance_m(kPlatePlace_m + inside.cwiseProduct(kPlate_m)) < 1e-9, "a point of the plate is not covered");
+  }
+  check(distance_m(kPlatePlace_m + Vector3(0, 0, 0.02 + 0.03)) > 0.0, "the capsules reach 3 cm above the plate");
+}
+
+void what_touches_the_first_links_as_it_is_built_is_no_pair(void**) {
+  const Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
+  assert_int_equal(shapes_of(arm, "pedestal").size(), 1);
+  bool far = false;
+  for (const auto& [a, b] : find_self_pairs(arm, 0.02)) {
+    const LinkShape &one = arm.shapes[static_cast<size_t>(a)], &other = arm.shapes[static_cast<size_t>(b)];
+    if (one.link != "pedestal" && other.link != "pedestal") continue;
+    check(one.body != other.body && one.link != "s1" && other.link != "s1", "%s and %s", one.link.c_str(),
+          other.link.c_str());
+    far = far || std::max(one.body, other.body) > 3;
+  }
+  assert_true(far);
+}
+
+/// From home to a target under the plate, for 6 s; the least distance of the plate to the arm by FCL, m.
+double reach_under_the_plate(const Model& model) {
+  test::ClosedLoop loop(model, test::home_rad());
+  sim::Truth truth(sim::Arm("urdf/lwa3.urdf", "base_link", "tool"));
+  sim::Obstacle plate;
+  plate.solid = {sim::Shape::kBox, kPlate_m};
+  plate.motion.position_m = kPlatePlace_m;
+  loop.target.position_m = Vector3(-0.6, 0.0, 0.2);
+  loop.target_speaks = true;
+  double least_m = 1.0;
+  for (int i = 0; i < 600; ++i) {
+    loop.cycle();
+    truth.place(loop.arm.position_rad);
+    least_m = std::min(least_m, truth.clearance_m(plate));
+  }
+  test::check_stream(loop);
+  return least_m;
+}
+
+void the_arm_keeps_clear_of_the_plate(void**) {
+  Model model = test::lwa3_model("sidestep");
+  const double without_m = reach_under_the_plate(model);
+  check(without_m < 0.0, "the plate is not in the way: %g m", without_m);
+  const JointLimits limits = model.arm.limits;
+  model.arm = load_arm(on_a_torso(), "base_link", "tool");
+  model.arm.limits = limits;
+  model.self_pairs = find_self_pairs(model.arm, model.settings.shield.self_clearance_m);
+  const double least_m = reach_under_the_plate(model);
+  print_message("least distance to the plate, by FCL: %.1f mm\n", 1e3 * least_m);
+  check(least_m > 0.01, "%g m", least_m);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(a_torso_and_what_is_fixed_to_it_are_there_but_not_its_other_arm),
+      cmocka_unit_test(a_plate_is_covered_where_it_is_and_little_more),
+      cmocka_unit_test(what_touches_the_first_links_as_it_is_built_is_no_pair),
+      cmocka_unit_test(the_arm_keeps_clear_of_the_plate),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
