@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "firmware/io/config/config.h"
+#include "firmware/io/loop/cycle_clock.h"
 #include "firmware/io/loop/loop.h"
 
 namespace {
@@ -54,8 +55,8 @@ int run(const Arguments& arguments) {
   Config config;
   try {
     config = load_config(arguments.config, arguments.overrides);
-    if (arguments.lockstep && config.dialect != Dialect::kSidestep)
-      throw std::runtime_error("--lockstep: not with dialect iiwa, whose driver may not be answered at once");
+    if (arguments.lockstep && config.dialect->no_lockstep)
+      throw std::runtime_error(std::string("--lockstep: not with ") + config.dialect->no_lockstep);
   } catch (const std::exception& error) {
     std::cerr << "controller: " << error.what() << "\n";
     return 2;

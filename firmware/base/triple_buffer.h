@@ -5,18 +5,20 @@
 
 namespace sidestep {
 
-/// The latest value from one writing thread to one reading thread; neither ever waits. Three slots: the writer fills
-/// one, the reader keeps one, the third holds the newest complete value and is swapped with either.
+/// Passes the newest value from one writing thread to one reading thread; neither ever waits. Of the three slots the
+/// writer fills one, the reader uses one, and the third holds the newest complete value and is swapped with either.
 template <typename Value>
 class TripleBuffer {
  public:
-  /// Writer: the slot to fill. Its old content is arbitrary.
+  /// Writer: the slot to fill; its previous content is arbitrary.
   Value& draft() { return slots_[draft_]; }
 
   /// Writer: makes the draft the newest value.
-  void post() { draft_ = middle_.exchange(static_cast<unsigned>(draft_) | kNew, std::memory_order_acq_rel) & kIndex; }
+  void publish() {
+    draft_ = middle_.exchange(static_cast<unsigned>(draft_) | kNew, std::memory_order_acq_rel) & kIndex;
+  }
 
-  /// Reader: the newest value; stays valid and unchanged until the next call.
+  /// Reader: the newest value; valid and unchanged until the next call.
   const Value& latest() {
     if (middle_.load(std::memory_order_relaxed) & kNew)
       reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;

@@ -1,67 +1,27 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
+#include <optional>
 
-#include "firmware/control/message_order.h"
+#include "firmware/control/command_stream.h"
+#include "firmware/control/input_monitor.h"
 #include "firmware/control/stages.h"
 #include "firmware/control/supervisor.h"
-#include "firmware/control/types/guide.h"
-#include "firmware/model/clearance.h"
+#include "firmware/control/types/inputs.h"
+#include "firmware/control/types/model.h"
 
 namespace sidestep {
 
-/// The controller's knowledge that does not change while it runs.
-struct Model {
-  Arm arm;
-  Settings settings;
-  std::vector<std::pair<int, int>> self_pairs;  ///< link shapes that must keep clear of each other
-  std::vector<Obstacle> surroundings;           ///< always there, at rest, whatever is reported
-};
-
-/// What one cycle is given. Messages are already checked (io/admission); they stay valid during the call.
-struct Inputs {
-  Latest<ArmState> arm;
-  Latest<Target> target;
-  Latest<ObstacleSet> obstacles;
-  int skipped_cycles = 0;  ///< since the cycle before
-  bool stop = false;
-  double foreign_command_s = -HUGE_VAL;  ///< when somebody else's command for this arm was heard last
-  const Guide* guide = nullptr;          ///< from foresight; null: none
-};
-
-/// What one cycle hands to the next.
+/// What one cycle hands to the next, grouped by the part of the cycle that owns it.
 struct State {
-  Supervision supervision;
-
-  bool commanding = false;     ///< a command stream is running; it goes on from the next two
-  JointVector position_rad;    ///< last commanded
-  JointVector velocity_radps;  ///< last commanded
-  JointVector rate_radps;      ///< at which the commanded position moved: the velocity, unless it was catching up
-
-  JointVector evasion_radps;  ///< by which the shield gets out of a way; size 0: nothing is in the way
-
-  bool planning = false;  ///< was tracking, so that planned_mps is valid
-  Vector3 planned_mps = Vector3::Zero();
-
-  int64_t arm_count = 0;  ///< of the arm state seen last, and what it said:
-  int64_t arm_utime = 0;
-  double arm_received_s = 0.0;
-  double arm_started_s = 0.0;  ///< when its driver began to speak
-  JointVector arm_position_rad;
-  JointVector arm_rate_radps;  ///< from the position before to this one
-  double consistent_since_s = 0.0;
-  int skipped_in_a_row = 0;
-  double cycle_s = 0.0;          ///< when the last cycle was
-  double stopped_s = -HUGE_VAL;  ///< when the arm last stopped by itself for want of commands
+  Supervision supervision;             ///< supervisor.h
+  ArmMonitor arm_monitor;              ///< input_monitor.h
+  CommandStream stream;                ///< command_stream.h
+  JointVector evasion_radps;           ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
+  std::optional<Vector3> planned_mps;  ///< commanded tool velocity of the last cycle, if it was in TRACK (paper's law)
 };
 
-/// The running stream of commands, if any, has come to rest.
-bool at_rest(const State& state);
-
-/// What one cycle tells the world, as controller_status_t.
+/// The report of one cycle, published as controller_status_t.
 struct Report {
   Mode mode = Mode::kWait;
   Fault fault = Fault::kNone;
@@ -74,25 +34,33 @@ struct Report {
   int nearest_shape = -1;                                               ///< index into Arm::shapes
   double beta = 0.0;
   double damping = 0.0;
-  double shield_correction_radps = 0.0;
+  double shield_correction_radps = 0.0;  ///< |safe - nominal|
   ForesightStatus foresight_status = ForesightStatus::kDirect;
-  double guide_horizon_s = 0.0;  ///< until the guide's end; 0 without one
-  const Guide* guide = nullptr;  ///< followed in this cycle, of the inputs
-  const char* message = "";
+  double guide_horizon_s = 0.0;  ///< until the end of the guide; 0 without one
+  const Guide* guide = nullptr;  ///< the guide of the inputs, where this cycle followed it
+  const char* message = "";      ///< static text
 };
 
 struct Result {
-  bool commanding = false;  ///< the command belongs to a running stream; false while waiting and after a fault
-  Command command;          ///< valid as soon as an arm state is known; until then of size 0
+  bool commanding = false;  ///< the command is to be sent; false while waiting and after a fault
+  Command command;          ///< of size 0 before the first arm state
   Report report;
   State next;
 };
 
-/// One control cycle at time now_s: a pure function, bounded, without allocation, clock or I/O.
+/// One control cycle at time now_s: a pure, bounded function without allocation, clock or I/O.
 ///
-/// now_s is on the clock of the inputs' receipt times. Call it once a period, Settings::period_s(); every command
-/// continues the last one within the joints' velocity, acceleration and position limits. A probe hears when the stages
-/// end, as far as there are any before the first arm state; it changes nothing.
+///   monitor_inputs      fresh? ordered? consistent?                      input_monitor.h
+///   next_mode           WAIT, HOLD, TRACK, BRAKE, FAULT                   supervisor.h
+///   forward_kinematics  link poses, tool Jacobian                         model/kinematics.h
+///   measure_clearance   distances and closest approaches                  model/clearance.h
+///   law                 nominal joint velocity                            sidestep_law.h, guided_law.h, paper/
+///   shield              the nearest safe joint velocity                   shield/shield.h
+///   gate                finite, continuous, within the joint limits       command_stream.h
+///
+/// now_s is on the clock of the inputs' receipt times. Call step() once per Settings::period_s(). Every command
+/// continues the last one within the joints' velocity, acceleration and position limits. The probe is called at the end
+/// of each stage that runs and does not influence the result.
 Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe = nullptr);
 
 }  // namespace sidestep

@@ -8,11 +8,12 @@ ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obsta
   if (!obstacles.message) return {nullptr, 0.0, 0.0, &model.surroundings};
   const Settings& settings = model.settings;
   const ObstacleTrust& trust = settings.obstacle_trust;
-  const double age_s = std::max(0.0, obstacles.age_s(now_s)) + trust.latency_s;  // a clock may be set back
-  const double anywhere_m = age_s * settings.obstacle_speed_bound_mps;
-  const double astray_m = std::min(anywhere_m, 0.5 * trust.acceleration_bound_mps2 * age_s * age_s);
+  const double age_s = std::max(0.0, obstacles.age_s(now_s)) + trust.latency_s;  // the clock may have been set back
+  const double by_speed_m = age_s * settings.obstacle_speed_bound_mps;
+  const double by_acceleration_m = std::min(by_speed_m, 0.5 * trust.acceleration_bound_mps2 * age_s * age_s);
   const bool fresh = obstacles.fresh(now_s, settings.timeouts.obstacles_s);
-  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? astray_m : anywhere_m), &model.surroundings};
+  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? by_acceleration_m : by_speed_m),
+          &model.surroundings};
 }
 
 Target extrapolated(const Target& target, double dt_s) {

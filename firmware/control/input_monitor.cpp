@@ -3,99 +3,100 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/control/message_order.h"
+
 namespace sidestep {
 namespace {
 
-constexpr int kMostSkippedCycles = 3;  // in a row; more than a hiccup
-constexpr double kArmWaits_s = 0.05;   // an arm that hears no command for longer stops by itself
+constexpr int kMaxSkippedCycles = 3;  // in a row; a single late wake-up skips one or two
+constexpr double kArmWaits_s = 0.05;  // an arm without commands for longer stops on its own (the plant's contract)
+constexpr double kSensorNoise_rad = 1e-3;
+constexpr double kRounding_s = 1e-9;
 
-/// Whether an arm can have come from one state to the next in this time. One period and a sensor's noise are granted on
-/// top.
-bool reachable(const Model& model, const State& before, const ArmState& arm, double dt_s) {
+/// Whether the arm can have come from the monitored state to this one within dt_s and one period.
+bool reachable(const Model& model, const ArmMonitor& before, const ArmState& arm, double dt_s) {
   if (dt_s <= 0.0) return false;
-  const JointVector step_rad = (arm.position_rad - before.arm_position_rad).cwiseAbs();
+  const JointVector step_rad = (arm.position_rad - before.position_rad).cwiseAbs();
   const JointVector allowed_rad = model.arm.limits.velocity_radps * (dt_s + model.settings.period_s()) +
-                                  JointVector::Constant(step_rad.size(), 1e-3);
+                                  JointVector::Constant(step_rad.size(), kSensorNoise_rad);
   return (step_rad.array() <= allowed_rad.array()).all();
 }
 
-/// Whether this may be the first state of another driver: its clock starts over, or it was silent for long.
-bool speaks_anew(double silence_s, const Latest<ArmState>& arm, const State& before) {
-  return before.arm_count == 0 || arm.message->utime < before.arm_utime ||
-         arm.received_s - before.arm_received_s > silence_s;
+/// Whether this may be the first state of another driver: its clock started over, or no state came for longer than
+/// the start guard.
+bool is_new_driver(double start_guard_s, const Latest<ArmState>& arm, const ArmMonitor& before) {
+  return before.count == 0 || arm.message->utime < before.utime || arm.received_s - before.received_s > start_guard_s;
 }
 
-/// A limit for the time between two arm states as the cycles see them; it cannot be less than a period.
+/// A limit for the time between two arm states as the cycles see them; at least one and a half periods.
 double longest_gap_s(const Model& model, double limit_s) {
   return std::max(limit_s, 1.5 * model.settings.period_s());
 }
 
-/// What a new arm state tells about the time since the one before.
-struct ArmNews {
-  bool contradicts = false;  ///< no arm gets there in that time
-  double silence_s = 0.0;    ///< before it, on a clock that stood still meanwhile, as in lockstep
-};
-
-ArmNews follow_arm(const Model& model, const Latest<ArmState>& arm, double now_s, State& next) {
-  ArmNews news;
-  if (arm.count == next.arm_count) return news;
-  const bool first = next.arm_count == 0;
-  const double by_receipt_s = arm.received_s - next.arm_received_s;
+/// Takes a new arm state into the monitor; without a new one nothing changes. Returns the time without an arm state
+/// before it, on the clock of the cycles, which stands still between two states in lockstep.
+double update_arm(const Model& model, const Latest<ArmState>& arm, double now_s, ArmMonitor& monitor,
+                  InputStatus& status) {
+  if (arm.count == monitor.count) return 0.0;
+  const bool first = monitor.count == 0;
+  const double by_receipt_s = arm.received_s - monitor.received_s;
   const double lost_s = longest_gap_s(model, model.settings.timeouts.arm_state_lost_s);
   const bool gap = by_receipt_s > lost_s;
-  const double elapsed_s = sent_apart_s(next.arm_utime, arm.message->utime, by_receipt_s, lost_s);
-  const bool agrees = first || reachable(model, next, *arm.message, elapsed_s);
-  if (first || gap || !agrees) next.consistent_since_s = now_s;
-  news.contradicts = !agrees && !gap;
-  // Were there others in between, it was this side that did not look.
-  if (!first && arm.count == next.arm_count + 1) news.silence_s = std::min(by_receipt_s, now_s - next.cycle_s);
-  // Commands do not go on from the last one when that does not lead this arm any more.
-  if (next.commanding) next.commanding = reachable(model, next, *arm.message, std::max(by_receipt_s, elapsed_s));
-  if (speaks_anew(model.settings.start_guard_s, arm, next)) next.arm_started_s = arm.received_s;
-  next.arm_rate_radps = JointVector::Zero(model.arm.joints);
-  if (!first && elapsed_s > 0.0) next.arm_rate_radps = (arm.message->position_rad - next.arm_position_rad) / elapsed_s;
-  next.arm_count = arm.count;
-  next.arm_received_s = arm.received_s;
-  next.arm_utime = arm.message->utime;
-  next.arm_position_rad = arm.message->position_rad;
-  return news;
+  const double elapsed_s = sent_apart_s(monitor.utime, arm.message->utime, by_receipt_s, lost_s);
+  const bool agrees = first || reachable(model, monitor, *arm.message, elapsed_s);
+  if (first || gap || !agrees) monitor.consistent_since_s = now_s;
+  status.arm_inconsistent = !agrees && !gap;
+  status.arm_follows = first || reachable(model, monitor, *arm.message, std::max(by_receipt_s, elapsed_s));
+  // States that came in between were received in time, but not read: then there was no silence.
+  const bool next_in_count = !first && arm.count == monitor.count + 1;
+  const double silence_s = next_in_count ? std::min(by_receipt_s, now_s - monitor.cycle_s) : 0.0;
+
+  if (is_new_driver(model.settings.start_guard_s, arm, monitor)) monitor.driver_started_s = arm.received_s;
+  monitor.rate_radps = JointVector::Zero(model.arm.joints);
+  if (!first && elapsed_s > 0.0) monitor.rate_radps = (arm.message->position_rad - monitor.position_rad) / elapsed_s;
+  monitor.count = arm.count;
+  monitor.received_s = arm.received_s;
+  monitor.utime = arm.message->utime;
+  monitor.position_rad = arm.message->position_rad;
+  return silence_s;
+}
+
+void monitor_arm(const Model& model, const Latest<ArmState>& arm, double now_s, ArmMonitor& monitor,
+                 InputStatus& status) {
+  const Timeouts& timeouts = model.settings.timeouts;
+  const double silence_s = update_arm(model, arm, now_s, monitor, status);
+  const auto in_time = [&](double limit_s) {
+    return arm.fresh(now_s, limit_s) && silence_s <= longest_gap_s(model, limit_s);
+  };
+  status.arm_starting = now_s - monitor.driver_started_s < model.settings.start_guard_s;
+  status.arm_fresh = in_time(timeouts.arm_state_s);
+  status.arm_lost = !in_time(timeouts.arm_state_lost_s);
+  if (status.arm_lost) monitor.consistent_since_s = now_s;
+  status.arm_consistent = now_s - monitor.consistent_since_s >= timeouts.consistent_s - kRounding_s;
+  status.arm_received_s = monitor.received_s;
 }
 
 }  // namespace
 
-InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, State& next) {
+InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor) {
   const Timeouts& timeouts = model.settings.timeouts;
-  const double rounding_s = 1e-9;
   InputStatus status;
-  // After a pause of this side commands do not go on from the last one: the arm has begun to stop by itself.
   const double waits_s = longest_gap_s(model, kArmWaits_s);
-  if (next.commanding && now_s - next.cycle_s > waits_s + rounding_s) {
-    next.commanding = false;
-    next.stopped_s = next.cycle_s + waits_s + model.settings.period_s();  // as far as arm states tell
-  }
-  if (now_s < next.cycle_s) next.stopped_s = -HUGE_VAL;  // the clock has started over
+  status.cycles_paused = now_s - monitor.cycle_s > waits_s + kRounding_s;
+  status.arm_waits_until_s = monitor.cycle_s + waits_s;
+  status.clock_went_back = now_s < monitor.cycle_s;
   status.arm_known = inputs.arm.message != nullptr;
-  if (status.arm_known) {
-    const ArmNews news = follow_arm(model, inputs.arm, now_s, next);
-    const auto in_time = [&](double limit_s) {
-      return inputs.arm.fresh(now_s, limit_s) && news.silence_s <= longest_gap_s(model, limit_s);
-    };
-    status.arm_inconsistent = news.contradicts;
-    status.arm_starting = now_s - next.arm_started_s < model.settings.start_guard_s;
-    status.arm_fresh = in_time(timeouts.arm_state_s);
-    status.arm_lost = !in_time(timeouts.arm_state_lost_s);
-    if (status.arm_lost) next.consistent_since_s = now_s;
-    status.arm_consistent = now_s - next.consistent_since_s >= timeouts.consistent_s - rounding_s;
-  }
-  next.cycle_s = now_s;
-  const bool none_needed = !inputs.obstacles.message && !model.settings.wait_for_obstacles;
-  status.obstacles_known = inputs.obstacles.message || none_needed;
-  status.obstacles_fresh = none_needed || inputs.obstacles.fresh(now_s, timeouts.obstacles_s);
+  if (status.arm_known) monitor_arm(model, inputs.arm, now_s, monitor, status);
+  monitor.cycle_s = now_s;
+
+  const bool none_required = !inputs.obstacles.message && !model.settings.wait_for_obstacles;
+  status.obstacles_known = inputs.obstacles.message || none_required;
+  status.obstacles_fresh = none_required || inputs.obstacles.fresh(now_s, timeouts.obstacles_s);
   status.target_known = inputs.target.message != nullptr;
   status.target_fresh = inputs.target.fresh(now_s, timeouts.target_s);
 
-  next.skipped_in_a_row = inputs.skipped_cycles > 0 ? next.skipped_in_a_row + inputs.skipped_cycles : 0;
-  status.late = next.skipped_in_a_row >= kMostSkippedCycles;
+  monitor.skipped_in_a_row = inputs.skipped_cycles > 0 ? monitor.skipped_in_a_row + inputs.skipped_cycles : 0;
+  status.late = monitor.skipped_in_a_row >= kMaxSkippedCycles;
   status.stop = inputs.stop;
   status.foreign_command = now_s - inputs.foreign_command_s <= timeouts.consistent_s;
   return status;

@@ -1,12 +1,27 @@
 #pragma once
 
-#include "firmware/control/cycle.h"
+#include "firmware/control/supervisor.h"
+#include "firmware/control/types/inputs.h"
+#include "firmware/control/types/model.h"
 
 namespace sidestep {
 
-/// Compares the inputs with the clock, and the arm state with the one before; keeps in `next` what the following cycle
-/// compares with. Arm states are consistent when none is missing for long, their utime advances and no joint moves
-/// farther than its velocity limit allows.
-InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, State& next);
+/// What input monitoring stores from one cycle to the next.
+struct ArmMonitor {
+  int64_t count = 0;  ///< of the newest arm state, and its content:
+  int64_t utime = 0;
+  double received_s = 0.0;
+  JointVector position_rad;
+  JointVector rate_radps;           ///< difference quotient of the last two positions
+  double driver_started_s = 0.0;    ///< first state of the present arm driver
+  double consistent_since_s = 0.0;  ///< since then arm states have been consistent
+  int skipped_in_a_row = 0;         ///< cycles
+  double cycle_s = 0.0;             ///< time of the last cycle
+};
+
+/// Compares the ages of the inputs with their timeouts and the arm state with the previous one. Arm states are
+/// consistent when no gap exceeds timeouts.arm_state_lost_s, their utime advances, and no joint moves farther than its
+/// velocity limit allows in the elapsed time plus one period, plus 1 mrad of sensor noise. `monitor` is updated.
+InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor);
 
 }  // namespace sidestep

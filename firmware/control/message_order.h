@@ -1,54 +1,35 @@
 #pragma once
 
-#include "firmware/control/types/messages.h"
-#include "firmware/control/types/settings.h"
+#include <cstdint>
 
 namespace sidestep {
 
-/// Whether the values of a message can be true: finite, within what any arm or room can be, unit quaternions.
-bool plausible(const ArmState& state, int joints);
-bool plausible(const Target& target);
-bool plausible(const Obstacle& obstacle);
-
-/// The newest valid message of one channel, when it was received and how many there have been.
-template <typename Message>
-struct Latest {
-  const Message* message = nullptr;  ///< null: none yet
-  double received_s = 0.0;
-  int64_t count = 0;
-
-  double age_s(double now_s) const { return now_s - received_s; }
-  bool fresh(double now_s, double limit_s) const { return message && age_s(now_s) >= 0.0 && age_s(now_s) <= limit_s; }
-};
-
-/// From one message to another by their sender's clock, s, as far as that agrees with how far apart they were received:
-/// no network holds a message back for longer than slack_s.
+/// Time between the sending of two messages, s: the difference of their utimes, but at most the time between their
+/// receipts plus slack_s, since no network delays a message longer than that. utime in microseconds.
 double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s);
 
-/// Decides by its utime whether a message is newer than all before it on its channel.
-class Order {
+/// Decides by utime whether a message of one channel is newer than all messages accepted before it.
+class MessageOrder {
  public:
-  /// Accepts a newer utime. An older one is dropped unless its sender has evidently started anew: nothing was accepted
-  /// for `restart_s` (local receipt times, s), or it is the last of three in a row that are older by more than that; a
-  /// message that is merely late comes among newer ones. A repeated utime is always dropped: a sender that has frozen
-  /// says nothing new.
+  /// Accepts a newer utime and drops a repeated one. Drops an older one, unless its sender has restarted: nothing was
+  /// accepted for `restart_s` (local receipt times, s), or it is the third in a row, increasing, that is older by more
+  /// than `restart_s`. A message that is merely late arrives between newer ones and is dropped.
   bool accept(int64_t utime, double now_s, double restart_s);
 
-  /// Whether a message that was not accepted is older than the newest, not the same once more.
+  /// For a message that was not accepted: it is older than the newest one, not a repetition of it.
   bool is_late(int64_t utime) const { return any_ && utime < utime_; }
 
-  /// From the message accepted before the last to the last, s, by their receipt; by their sender's clock where that
-  /// says more, with `restart_s` of slack. 0 for the first.
+  /// Time between the last two accepted messages, s: the larger of the times by receipt and by the sender's clock, the
+  /// latter with `restart_s` of slack. 0 for the first message.
   double elapsed_s() const { return elapsed_s_; }
 
  private:
-  static constexpr int kAnewInARow = 3;
-  bool starts_anew(int64_t utime, double now_s, double restart_s);
+  bool has_restarted(int64_t utime, double now_s, double restart_s);
 
   bool any_ = false;
   int64_t utime_ = 0;
-  int64_t anew_utime_ = 0;  ///< of the last one that was far back
-  int anew_in_a_row_ = 0;   ///< those with nothing accepted in between
+  int64_t old_utime_ = 0;  ///< of the last message that was older by more than restart_s
+  int old_in_a_row_ = 0;   ///< such messages since the last accepted one
   double accepted_s_ = 0.0;
   double elapsed_s_ = 0.0;
 };

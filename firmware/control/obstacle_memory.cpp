@@ -7,10 +7,11 @@
 namespace sidestep {
 namespace {
 
-constexpr double kNoise_m = 0.05;     // what a measurement may be wrong by
-constexpr double kRounding_s = 1e-6;  // of times that are a whole number of periods apart
+constexpr double kNoise_m = 0.05;     // of a measured position
+constexpr double kRounding_s = 1e-6;  // of times that are whole periods apart
 
-/// How far the ends of the axis have moved, or the sides of a box turned; which is which does not matter.
+/// Largest displacement of an end of the axis, or of the side of a turned box; swapped ends and opposite sides are the
+/// same pose.
 double displacement_m(const Obstacle& before, const Obstacle& now) {
   const Capsule &a = before.capsule, &b = now.capsule;
   const double straight_m = std::max((a.start - b.start).norm(), (a.end - b.end).norm());
@@ -40,84 +41,86 @@ bool ObstacleMemory::could_move(const Obstacle& before, const Obstacle& now, dou
   return displacement_m(before, now) <= fastest_mps * elapsed_s + kNoise_m;
 }
 
-bool ObstacleMemory::counts(const RememberedObstacle& place, double now_s) const {
-  // A time to come is of a clock that has been set back.
-  return place.since_s <= now_s && place.since_s + memory_s_ > now_s + kRounding_s;
+bool ObstacleMemory::is_valid(const RememberedObstacle& remembered, double now_s) const {
+  // A time in the future was stored before the clock was set back.
+  return remembered.since_s <= now_s && remembered.since_s + coast_s_ > now_s + kRounding_s;
 }
 
-void ObstacleMemory::remember_jump(RememberedObstacle place) {
-  place.obstacle.velocity_mps.setZero();
-  place.obstacle.angular_velocity_radps.setZero();
-  jumped_[next_jump_] = place;
-  next_jump_ = (next_jump_ + 1) % kMostJumps;
+void ObstacleMemory::remember_jump(RememberedObstacle jumped) {
+  jumped.obstacle.velocity_mps.setZero();
+  jumped.obstacle.angular_velocity_radps.setZero();
+  jumped_[next_jump_] = jumped;
+  next_jump_ = (next_jump_ + 1) % kMaxJumps;
 }
 
-/// Goes through the set before, the new one and what was gone already, all by id.
+/// Merges three lists sorted by id: the previous set, the new set and the vanished obstacles. Obstacles only in the
+/// previous set vanish; obstacles in both may have jumped; vanished ones that are reported again are dropped.
 void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double now_s) {
-  const Gone& were_gone = gone_[now_];
-  Gone& gone = gone_[1 - now_];
-  gone.count = 0;
+  const Vanished& were_vanished = vanished_[current_];
+  Vanished& vanished = vanished_[1 - current_];
+  vanished.count = 0;
   int b = 0, n = 0, g = 0;
-  const auto keep_gone_below = [&](int64_t id) {
-    for (; g < were_gone.count && were_gone.places[g].obstacle.id < id; ++g)
-      if (counts(were_gone.places[g], now_s)) gone.add(were_gone.places[g]);
+  const auto keep_vanished_below = [&](int64_t id) {
+    for (; g < were_vanished.count && were_vanished.obstacles[g].obstacle.id < id; ++g)
+      if (is_valid(were_vanished.obstacles[g], now_s)) vanished.add(were_vanished.obstacles[g]);
   };
   while (b < before_count_ || n < set.count) {
     const int64_t none = int64_t{std::numeric_limits<int32_t>::max()} + 1;
     const int64_t id_before = b < before_count_ ? before_[b].id : none;
     const int64_t id_now = n < set.count ? set.obstacles[order_[n]].id : none;
-    keep_gone_below(std::min(id_before, id_now));
+    keep_vanished_below(std::min(id_before, id_now));
     if (id_before < id_now) {
-      gone.add({before_[b++], before_s_});
+      vanished.add({before_[b++], before_s_});
     } else if (id_now < id_before) {
-      if (g < were_gone.count && were_gone.places[g].obstacle.id == id_now) ++g;  // is back
+      if (g < were_vanished.count && were_vanished.obstacles[g].obstacle.id == id_now) ++g;  // reported again
       ++n;
     } else {
       if (!could_move(before_[b], set.obstacles[order_[n]], elapsed_s)) remember_jump({before_[b], before_s_});
       ++b, ++n;
     }
   }
-  keep_gone_below(std::numeric_limits<int64_t>::max());
-  now_ = 1 - now_;
+  keep_vanished_below(std::numeric_limits<int64_t>::max());
+  current_ = 1 - current_;
 }
 
 void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double now_s) {
   sort(set);
-  const Gone& were_gone = gone_[now_];
-  Gone& gone = gone_[1 - now_];
-  gone.count = 0;
+  const Vanished& were_vanished = vanished_[current_];
+  Vanished& vanished = vanished_[1 - current_];
+  vanished.count = 0;
   int b = 0, g = 0;
   for (int n = 0; n < set.count; ++n) {
     const RememberedObstacle late{set.obstacles[order_[n]], now_s};
     const int32_t id = late.obstacle.id;
-    for (; g < were_gone.count && were_gone.places[g].obstacle.id <= id; ++g)
-      if (were_gone.places[g].obstacle.id < id) gone.add(were_gone.places[g]);
+    for (; g < were_vanished.count && were_vanished.obstacles[g].obstacle.id <= id; ++g)
+      if (were_vanished.obstacles[g].obstacle.id < id) vanished.add(were_vanished.obstacles[g]);
     while (b < before_count_ && before_[b].id < id) ++b;
     if (b == before_count_ || before_[b].id > id)
-      gone.add(late);
+      vanished.add(late);
     else if (!could_move(late.obstacle, before_[b], late_s))
       remember_jump(late);
   }
-  while (g < were_gone.count) gone.add(were_gone.places[g++]);
-  now_ = 1 - now_;
+  while (g < were_vanished.count) vanished.add(were_vanished.obstacles[g++]);
+  current_ = 1 - current_;
 }
 
-void ObstacleMemory::add(const RememberedObstacle& place, double now_s, ObstacleSet& set) const {
-  if (!counts(place, now_s) || set.count == kMaxObstacles) return;
-  set.obstacles[set.count++] = extrapolated(place.obstacle, now_s - place.since_s);
-  ++set.obstacle_memory;
+void ObstacleMemory::append(const RememberedObstacle& remembered, double now_s, ObstacleSet& set) const {
+  if (!is_valid(remembered, now_s) || set.count == kMaxObstacles) return;
+  set.obstacles[set.count++] = extrapolated(remembered.obstacle, now_s - remembered.since_s);
+  ++set.remembered;
 }
 
-void ObstacleMemory::complete(ObstacleSet& set, double elapsed_s, double now_s) {
+void ObstacleMemory::add_remembered(ObstacleSet& set, double elapsed_s, double now_s) {
   sort(set);
   compare(set, elapsed_s, now_s);
   before_count_ = set.count;
   before_s_ = now_s;
+  any_set_ = true;
   for (int n = 0; n < before_count_; ++n) before_[n] = set.obstacles[order_[n]];
 
-  set.obstacle_memory = 0;
-  for (const RememberedObstacle& place : jumped_) add(place, now_s, set);
-  for (int i = 0; i < gone_[now_].count; ++i) add(gone_[now_].places[i], now_s, set);
+  set.remembered = 0;
+  for (const RememberedObstacle& jumped : jumped_) append(jumped, now_s, set);
+  for (int i = 0; i < vanished_[current_].count; ++i) append(vanished_[current_].obstacles[i], now_s, set);
 }
 
 }  // namespace sidestep

@@ -56,10 +56,10 @@ class DampedInverse {
 /// The preference: J* (x - J p) + p is p in the null space and x in the task.
 template <int rows>
 void follow(const SidestepGains& gains, const TaskJacobian& jacobian, const TaskVector& x,
-            const JointVector& preferred_radps, NominalCommand& wish) {
+            const JointVector& preferred_radps, NominalCommand& nominal) {
   const DampedInverse<rows> inverse(gains, jacobian);
-  wish.damping = inverse.lambda();
-  wish.velocity_radps = preferred_radps + inverse * (x - jacobian.lazyProduct(preferred_radps));
+  nominal.damping = inverse.lambda();
+  nominal.velocity_radps = preferred_radps + inverse * (x - jacobian.lazyProduct(preferred_radps));
 }
 
 }  // namespace
@@ -75,27 +75,27 @@ JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limi
   return away_radps;
 }
 
-NominalCommand sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps) {
-  const Target& target = now.target;
-  const TaskJacobian& jacobian = now.tool_jacobian;
+NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps) {
+  const Target& target = input.target;
+  const TaskJacobian& jacobian = input.tool_jacobian;
   const Eigen::Index rows = jacobian.rows();
-  const Vector3 error_m = target.position_m - now.poses.tool_position;
+  const Vector3 error_m = target.position_m - input.poses.tool_position;
 
-  NominalCommand wish;
-  wish.tool_velocity_mps = target.velocity_mps + clipped(gains.k_pos_per_s * error_m, gains.v_max_mps);
-  wish.task_speed_limited = gains.k_pos_per_s * error_m.norm() > gains.v_max_mps;
+  NominalCommand nominal;
+  nominal.tool_velocity_mps = target.velocity_mps + clipped(gains.k_pos_per_s * error_m, gains.v_max_mps);
+  nominal.task_speed_limited = gains.k_pos_per_s * error_m.norm() > gains.v_max_mps;
   TaskVector x(rows);
-  x.head<3>() = wish.tool_velocity_mps;
+  x.head<3>() = nominal.tool_velocity_mps;
   if (rows == 6) {
-    const Eigen::AngleAxisd to_goal(target.orientation.toRotationMatrix() * now.poses.tool_rotation.transpose());
+    const Eigen::AngleAxisd to_goal(target.orientation.toRotationMatrix() * input.poses.tool_rotation.transpose());
     x.tail<3>() = target.angular_velocity_radps + gains.k_ori_per_s * to_goal.angle() * to_goal.axis();
   }
 
   if (rows == 6)
-    follow<6>(gains, jacobian, x, preferred_radps, wish);
+    follow<6>(gains, jacobian, x, preferred_radps, nominal);
   else
-    follow<3>(gains, jacobian, x, preferred_radps, wish);
-  return wish;
+    follow<3>(gains, jacobian, x, preferred_radps, nominal);
+  return nominal;
 }
 
 }  // namespace sidestep

@@ -1,16 +1,18 @@
 #pragma once
 
 #include "firmware/control/types/law.h"
+#include "firmware/control/types/settings.h"
 
 namespace sidestep {
 
-/// The joint velocity that leads the joints from their limits, as far as the tool does not notice, n x 1: hardly any
-/// within the range, k_posture at a limit.
+/// Joint velocities away from the position limits, n x 1: -k_posture (deviation from the middle / half range)^3, which
+/// is small within the range and k_posture at a limit; 0 for a joint without limits.
 JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limits, const JointVector& q_rad);
 
-/// Our own law before the shield: the tool straight to the target with the target's own velocity in it, through a
-/// damped inverse, and `preferred_radps`, n x 1, in what that leaves free. It knows nothing of obstacles: the shield
-/// keeps clear, and repulsion in the wish only costs arrivals (measured by host/campaign).
-NominalCommand sidestep_law(const SidestepGains& gains, const Situation& now, const JointVector& preferred_radps);
+/// Our own law: the tool moves straight toward the target, at the target's velocity plus k_pos times the distance
+/// (clipped to v_max), through a damped inverse of the tool Jacobian. `preferred_radps`, n x 1, acts in the null space.
+/// The law does not consider obstacles; the shield does. (Repulsion in the nominal velocity was measured with the
+/// campaign: it only costs arrivals.)
+NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps);
 
 }  // namespace sidestep

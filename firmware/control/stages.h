@@ -2,12 +2,12 @@
 
 namespace sidestep {
 
-/// The parts of a control cycle, in their order: what is known of arm, obstacles and target; distances; the wish; the
-/// wish made safe; the last word.
-enum class Stage { kObserve, kClearance, kLaw, kShield, kGate };
+/// The stages of a control cycle, in their order: input monitoring with forward kinematics; clearance; law; shield;
+/// gate.
+enum class Stage { kMonitor, kClearance, kLaw, kShield, kGate };
 constexpr int kStages = 5;
 
-/// Hears when a stage of step() has ended. A cycle knows no clock; who runs it may have one.
+/// Called at the end of each stage of step(). The cycle itself has no clock; the caller measures time here.
 class StageProbe {
  public:
   virtual void passed(Stage stage) = 0;

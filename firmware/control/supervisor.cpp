@@ -3,6 +3,7 @@
 namespace sidestep {
 namespace {
 
+/// From WAIT or FAULT: HOLD when everything is ready, else the given mode with the reason.
 Supervision start(const InputStatus& status, Mode mode, Fault fault) {
   if (!status.arm_known) return {mode, fault, "waiting for the first arm state"};
   if (!status.arm_fresh) return {mode, fault, "waiting for arm states; the last one is too old"};

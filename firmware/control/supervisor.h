@@ -4,41 +4,52 @@
 
 namespace sidestep {
 
-/// What the supervisor knows in one cycle.
+/// What input monitoring finds in one cycle (input_monitor.h); the input of the supervisor and of the command stream.
 struct InputStatus {
-  bool arm_known = false;         ///< an arm state was ever received
-  bool arm_fresh = false;         ///< young enough to act on
-  bool arm_lost = false;          ///< older than what a short gap may be
-  bool arm_consistent = false;    ///< consistent for as long as it has to be
-  bool arm_starting = false;      ///< began to speak so recently that it must not hear a command
-  bool arm_inconsistent = false;  ///< this cycle's arm state contradicts the one before
-  bool obstacles_known = false;   ///< a set was received, or none is needed
-  bool obstacles_fresh = false;
+  bool arm_known = false;       ///< an arm state was ever accepted
+  bool arm_fresh = false;       ///< not older than timeouts.arm_state_s
+  bool arm_lost = false;        ///< older than timeouts.arm_state_lost_s
+  bool arm_consistent = false;  ///< consistent for timeouts.consistent_s without interruption
+  bool arm_starting = false;    ///< its driver started less than Settings::start_guard_s ago: must not receive commands
+  bool arm_inconsistent = false;  ///< this cycle's arm state cannot follow the one before
+  bool arm_follows = true;        ///< the arm can have come from its previous state while commands were sent
+  bool obstacles_known = false;   ///< a set was accepted, or none is required
+  bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s
   bool target_known = false;
-  bool target_fresh = false;
-  bool late = false;             ///< too many cycles in a row were skipped
-  bool stop = false;             ///< somebody wants the controller to end
-  bool foreign_command = false;  ///< another controller has just sent commands to the same arm
+  bool target_fresh = false;       ///< not older than timeouts.target_s
+  bool late = false;               ///< 3 or more cycles in a row were skipped
+  bool stop = false;               ///< the process has been asked to end
+  bool foreign_command = false;    ///< another controller commanded the arm within timeouts.consistent_s
+  bool clock_went_back = false;    ///< this cycle is earlier than the one before
+  bool cycles_paused = false;      ///< so long since the last cycle that the arm has begun to stop on its own
+  double arm_waits_until_s = 0.0;  ///< when it began to, if cycles_paused
+  double arm_received_s = 0.0;     ///< receipt of the newest arm state
 };
 
-/// Mode, what led to it, and both in words.
+/// Mode, fault and the reason for both in words.
 struct Supervision {
   Mode mode = Mode::kWait;
   Fault fault = Fault::kNone;
   const char* message = "starting";
 };
 
-/// The law and the shield have a say; in all other modes commands brake or rest.
+/// Law and shield choose the command; in all other modes commands brake or rest.
 inline bool moves(Mode mode) {
   return mode == Mode::kHold || mode == Mode::kTrack;
 }
 
-/// The modes and their transitions:
+/// The modes and their transitions. "Ready" means: arm state fresh, consistent for 0.5 s and not starting, no stop
+/// request, no foreign command, obstacles known and fresh. All times are timeouts of the configuration.
 ///
-///   WAIT  -> HOLD   the arm state is consistent, the obstacles are known and fresh
-///   HOLD <-> TRACK  there is a fresh target; HOLD slows to rest and goes on avoiding
-///   any  <-> BRAKE  arm state or obstacles too old, late, a rival, or asked to stop: to rest as fast as the joints can
-///   any   -> FAULT  arm state lost or contradictory, or a wish that is not finite; from there as from WAIT
+///   WAIT         -> HOLD   ready
+///   HOLD        <-> TRACK  the target is fresh (250 ms); HOLD slows to rest and keeps avoiding obstacles
+///   HOLD, TRACK <-> BRAKE  arm state older than 30 ms, obstacles older than 100 ms, 3 cycles in a row skipped, a
+///   foreign
+///                          command or a stop request: every joint brakes at its acceleration limit
+///   HOLD, TRACK,
+///   BRAKE        -> FAULT  arm state older than 100 ms, arm state inconsistent, or a command that is not finite
+///   FAULT        -> HOLD   ready
+///   FAULT        -> WAIT   ready, but no obstacle set is known
 Supervision next_mode(const Supervision& last, const InputStatus& status);
 
 }  // namespace sidestep

@@ -54,7 +54,7 @@ void Foresight::search(const Snapshot& now) {
     guide_.foresight_status = ForesightStatus::kWaiting;
 }
 
-const Guide& Foresight::think(const Snapshot& now) {
+const Guide& Foresight::update(const Snapshot& now) {
   if (!now.tracking) {
     take(Guide{}, Forecast{});
     candidate_ = Guide{};

@@ -15,7 +15,7 @@ class Foresight {
 
   /// One call a cycle, of bounded work: judges the guide of the calls before, or looks for a better one. The guide is
   /// for the cycles that follow. The same snapshots give the same guides.
-  const Guide& think(const Snapshot& now);
+  const Guide& update(const Snapshot& now);
 
  private:
   void judge(const Snapshot& now);

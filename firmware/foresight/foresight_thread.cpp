@@ -5,44 +5,45 @@
 namespace sidestep {
 namespace {
 
-constexpr double kThinkEvery_s = 0.01;
+constexpr double kUpdateEvery_s = 0.01;
 
 }  // namespace
 
-ForesightThread::ForesightThread(const Model& model, bool lockstep) : model_(model), on_(foresees(model.settings)) {
-  if (!on_) return;
+ForesightThread::ForesightThread(const Model& model, bool lockstep)
+    : model_(model), enabled_(model.settings.foresight.enabled) {
+  if (!enabled_) return;
   foresight_ = std::make_unique<Foresight>(model);
-  if (!lockstep) thinking_ = std::thread([this] { attend(); });
+  if (!lockstep) thread_ = std::thread([this] { run(); });
 }
 
 ForesightThread::~ForesightThread() {
   end_ = true;
-  if (thinking_.joinable()) thinking_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 const Guide* ForesightThread::latest() {
-  return on_ ? &guides_.latest() : nullptr;
+  return enabled_ ? &guides_.latest() : nullptr;
 }
 
-void ForesightThread::tell(const Inputs& inputs, const State& state, double now_s) {
-  if (!on_) return;
-  look(model_, inputs, state, now_s, snapshots_.draft());
-  snapshots_.post();
-  if (!thinking_.joinable()) think();
+void ForesightThread::submit(const Inputs& inputs, const State& state, double now_s) {
+  if (!enabled_) return;
+  take_snapshot(model_, inputs, state, now_s, snapshots_.draft());
+  snapshots_.publish();
+  if (!thread_.joinable()) update();
 }
 
-void ForesightThread::think() {
+void ForesightThread::update() {
   const Snapshot& snapshot = snapshots_.latest();
-  guides_.draft() = foresight_->think(snapshot);
-  guides_.post();
+  guides_.draft() = foresight_->update(snapshot);
+  guides_.publish();
 }
 
-void ForesightThread::attend() {
+void ForesightThread::run() {
   while (!end_) {
-    sleep_until(monotonic_s() + kThinkEvery_s);
+    sleep_until(monotonic_s() + kUpdateEvery_s);
     const double now_s = snapshots_.latest().now_s;
-    if (now_s != thought_of_s_) think();
-    thought_of_s_ = now_s;
+    if (now_s != updated_for_s_) update();
+    updated_for_s_ = now_s;
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <thread>
 
 #include "firmware/base/triple_buffer.h"
@@ -8,32 +9,34 @@
 
 namespace sidestep {
 
-/// Foresight beside the loop. On a thread of its own it thinks once for the newest cycle, not more than a hundred times
-/// a second; in lockstep within tell(), so that runs are deterministic. The loop waits for neither.
+/// Runs foresight for a loop. In real time: on a thread of its own, one update for the newest cycle, at most 100 times
+/// a second; the loop exchanges snapshots and guides with it through triple buffers and never waits. In lockstep: one
+/// update within each submit(), so that runs are deterministic; then the caller does the work itself.
 class ForesightThread {
  public:
-  /// To be made by a thread without real-time priority: its own inherits that. The model outlives this.
+  /// Call it from a thread without real-time priority, since the own thread inherits the priority. The model outlives
+  /// this.
   ForesightThread(const Model& model, bool lockstep);
   ~ForesightThread();
 
-  /// Loop: the guide to follow now; null without foresight. Stays as it is until the next call.
+  /// Loop: the guide to follow now; null with foresight switched off. Valid and unchanged until the next call.
   const Guide* latest();
 
-  /// Loop: what the cycle was told and where it led.
-  void tell(const Inputs& inputs, const State& state, double now_s);
+  /// Loop: the inputs of a cycle and the state that it led to.
+  void submit(const Inputs& inputs, const State& state, double now_s);
 
  private:
-  void think();
-  void attend();
+  void update();
+  void run();
 
   const Model& model_;
-  bool on_;
+  const bool enabled_;
   std::unique_ptr<Foresight> foresight_;
   TripleBuffer<Snapshot> snapshots_;
   TripleBuffer<Guide> guides_;
-  double thought_of_s_ = 0.0;
+  double updated_for_s_ = 0.0;  ///< time of the snapshot of the last update
   std::atomic<bool> end_{false};
-  std::thread thinking_;
+  std::thread thread_;
 };
 
 }  // namespace sidestep

@@ -54,7 +54,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
-  arm.utime = state.arm_utime = 0;  // any clock will do
+  arm.utime = state.arm_monitor.utime = 0;  // any clock will do
   Forecast forecast;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {
@@ -62,7 +62,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     const Target target = predicted_target(from.target, after_s);
     advance(obstacles_, period_s);
     arm.utime += static_cast<int64_t>(period_s * 1e6);
-    const int64_t count = state.arm_count + 1;
+    const int64_t count = state.arm_monitor.count + 1;
     Inputs inputs{{&arm, now_s, count}, {&target, now_s, count}, {&obstacles_, now_s, count}};
     inputs.guide = &guide;
     const Result result = step(coarse_, state, inputs, now_s);

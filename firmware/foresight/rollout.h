@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/foresight/snapshot.h"
+#include "firmware/model/kinematics.h"
 
 namespace sidestep {
 

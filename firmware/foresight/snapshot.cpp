@@ -40,7 +40,7 @@ class Nearest {
 
 }  // namespace
 
-void look(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot) {
+void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot) {
   snapshot.tracking = state.supervision.mode == Mode::kTrack;
   if (!snapshot.tracking) return;
   snapshot.now_s = now_s;

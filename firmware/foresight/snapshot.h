@@ -24,6 +24,6 @@ struct Snapshot {
 
 /// What foresight needs of the inputs of a cycle and of the state it led to. Of more than kMaxMovers obstacles those
 /// that come nearest to the base within horizon_s. Bounded, without allocation.
-void look(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot);
+void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot);
 
 }  // namespace sidestep

@@ -2,13 +2,25 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/control/reported.h"
+#include "firmware/control/input_gate.h"
+#include "firmware/control/validation.h"
 #include "firmware/foresight/foresight_thread.h"
 #include "firmware/io/config/config.h"
 #include "firmware/library/sidestep.h"
 
 namespace sidestep {
 namespace {
+
+// The constants of the public header are those of the firmware.
+static_assert(Controller::kMostJoints == kMaxJoints && Controller::kMostObstacles == kMaxObstacles);
+static_assert(static_cast<int>(Controller::Shape::kSphere) == static_cast<int>(Shape::kSphere));
+static_assert(static_cast<int>(Controller::Shape::kCapsule) == static_cast<int>(Shape::kCapsule));
+static_assert(static_cast<int>(Controller::Shape::kBox) == static_cast<int>(Shape::kBox));
+static_assert(static_cast<int>(Controller::Mode::kWait) == static_cast<int>(Mode::kWait));
+static_assert(static_cast<int>(Controller::Mode::kHold) == static_cast<int>(Mode::kHold));
+static_assert(static_cast<int>(Controller::Mode::kTrack) == static_cast<int>(Mode::kTrack));
+static_assert(static_cast<int>(Controller::Mode::kBrake) == static_cast<int>(Mode::kBrake));
+static_assert(static_cast<int>(Controller::Mode::kFault) == static_cast<int>(Mode::kFault));
 
 Vector3 vector(const Controller::Vector& xyz) {
   return Vector3(xyz[0], xyz[1], xyz[2]);
@@ -30,8 +42,8 @@ Controller::Joints array(const JointVector& values) {
 }
 
 Obstacle obstacle_of(const Controller::Obstacle& from) {
-  Obstacle to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position_m), quaternion(from.orientation),
-                                  vector(from.size_m));
+  Obstacle to = reported_obstacle(static_cast<sidestep::Shape>(from.shape), vector(from.position_m),
+                                  quaternion(from.orientation), vector(from.size_m));
   to.id = from.id;
   to.velocity_mps = vector(from.velocity_mps);
   to.angular_velocity_radps = vector(from.angular_velocity_radps);
@@ -81,9 +93,9 @@ struct Controller::Inside {
   Inside(Model the_model, Controller::Foresight foresight)
       : model(std::move(the_model)),
         foresight_thread(model, foresight == Foresight::kWithinStep),
-        obstacle_memory(obstacle_memory_of(model.settings)) {}
+        gate(model.arm.joints, model.settings, InputSource::kCalls) {}
 
-  /// The newest of a kind, and a place for the next, which counts only when it is found good.
+  /// The newest accepted value of a kind, and a draft for the next one.
   template <typename Message>
   struct Newest {
     std::unique_ptr<Message> message = std::make_unique<Message>(), draft = std::make_unique<Message>();
@@ -100,7 +112,7 @@ struct Controller::Inside {
 
   Model model;
   ForesightThread foresight_thread;
-  ObstacleMemory obstacle_memory;
+  InputGate gate;
   State state;
   Newest<sidestep::ArmState> arm;
   Newest<sidestep::Target> target;
@@ -127,7 +139,7 @@ double Controller::period_s() const {
 bool Controller::set_target(const Target& target, double now_s) {
   auto& newest = inside_->target;
   *newest.draft = target_of(target);
-  if (!complete(*newest.draft)) return false;
+  if (!inside_->gate.accept(*newest.draft, now_s)) return false;
   newest.take_draft(now_s);
   return true;
 }
@@ -137,11 +149,9 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
   auto& newest = inside_->obstacles;
   ObstacleSet& set = *newest.draft;
   set.count = count;
-  for (int i = 0; i < count; ++i) {
-    sidestep::Obstacle& obstacle = set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
-    if (!complete(static_cast<sidestep::Shape>(obstacles[i].shape), obstacle)) return false;
-  }
-  inside_->obstacle_memory.complete(set, newest.count > 0 ? now_s - newest.received_s : 0.0, now_s);
+  set.remembered = 0;
+  for (int i = 0; i < count; ++i) set.obstacles[static_cast<size_t>(i)] = obstacle_of(obstacles[i]);
+  if (!inside_->gate.accept(set, std::llround(now_s * 1e6), now_s)) return false;
   newest.take_draft(now_s);
   return true;
 }
@@ -151,7 +161,7 @@ Controller::Result Controller::step(const ArmState& arm, double now_s) {
   state.utime = std::llround(now_s * 1e6);
   state.position_rad = vector(arm.position_rad, joints());
   state.velocity_radps = vector(arm.velocity_radps, joints());
-  if (plausible(state, joints())) inside_->arm.take_draft(now_s);
+  if (inside_->gate.accept(state, now_s)) inside_->arm.take_draft(now_s);
   return step(now_s);
 }
 
@@ -161,7 +171,7 @@ Controller::Result Controller::step(double now_s) {
   inputs.guide = in.foresight_thread.latest();
   const sidestep::Result result = sidestep::step(in.model, in.state, inputs, now_s);
   in.state = result.next;
-  in.foresight_thread.tell(inputs, in.state, now_s);
+  in.foresight_thread.submit(inputs, in.state, now_s);
   return result_of(result);
 }
 

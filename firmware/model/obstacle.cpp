@@ -23,6 +23,7 @@ Obstacle sphere_obstacle(const Vector3& centre, double radius_m) {
 Obstacle capsule_obstacle(const Vector3& centre, const Matrix3& rotation, double radius_m, double length_m) {
   const Vector3 half = rotation * Vector3(0, 0, 0.5 * length_m);
   Obstacle rod;
+  rod.shape = Shape::kCapsule;
   rod.capsule = {centre - half, centre + half, radius_m};
   return rod;
 }
@@ -33,9 +34,11 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
   const Vector3 half = 0.5 * Vector3(edges_m[axes[0]], edges_m[axes[1]], edges_m[axes[2]]);
   const Vector3 half_length = half[0] * rotation.col(axes[0]);
   Obstacle box;
+  box.shape = Shape::kCapsule;
   box.capsule = {centre - half_length, centre + half_length, std::hypot(half[1], half[2])};
   const double line_m = 1e-6;  // what is thinner is a line, as the capsule
   if (half[1] < line_m) return box;
+  box.shape = Shape::kBox;
   box.half_width_m = half[1] * rotation.col(axes[1]);
   box.half_height_m = half[2];
   return box;

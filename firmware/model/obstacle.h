@@ -8,9 +8,13 @@
 
 namespace sidestep {
 
+/// Values as in obstacle_t.
+enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
+
 /// A moving obstacle in the base frame: a sphere, a capsule or a box. Its centre is the middle of the capsule's axis.
 struct Obstacle {
   int32_t id = 0;
+  Shape shape = Shape::kSphere;
   Capsule capsule{Vector3::Zero(), Vector3::Zero(), 0.0};  ///< it is this, or a box in it: along its longest edge
   Vector3 velocity_mps = Vector3::Zero();
   Vector3 angular_velocity_radps = Vector3::Zero();
@@ -23,7 +27,7 @@ struct Obstacle {
 /// The full set of obstacles at one instant. Large: lives in a mailbox or on the heap, never on a stack.
 struct ObstacleSet {
   int count = 0;
-  int obstacle_memory = 0;  ///< the last of them: not of the set, but where some have just been
+  int remembered = 0;  ///< how many at the end are remembered, not reported (obstacle_memory.h)
   std::array<Obstacle, kMaxObstacles> obstacles;
 };
 

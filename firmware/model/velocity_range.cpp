@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/control/types/messages.h"
-
 namespace sidestep {
 
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s) {
@@ -38,30 +36,6 @@ VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowes
     range.upper_radps[i] = std::clamp(range.upper_radps[i], slowest, fastest);
   }
   return range;
-}
-
-int apply_limits(const JointLimits& limits, const VelocityRange& range, const JointVector& last_velocity_radps,
-                 double period_s, JointVector& velocity_radps) {
-  int limiting = kLimitingNothing;
-  const double excess = velocity_radps.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff();
-  if (excess > 1.0) {
-    velocity_radps /= excess;
-    limiting |= kLimitingVelocity;
-  }
-  for (Eigen::Index i = 0; i < velocity_radps.size(); ++i) {
-    const double allowed = std::clamp(velocity_radps[i], range.lower_radps[i], range.upper_radps[i]);
-    const double rounding_radps = 1e-12;
-    if (std::abs(allowed - velocity_radps[i]) < rounding_radps) continue;
-    const double change = std::abs(velocity_radps[i] - last_velocity_radps[i]);
-    limiting |= change > limits.acceleration_radps2[i] * period_s ? kLimitingAcceleration : kLimitingPosition;
-    velocity_radps[i] = allowed;
-  }
-  return limiting;
-}
-
-JointVector brake(const JointLimits& limits, const JointVector& last_velocity_radps, double period_s) {
-  const JointVector step = limits.acceleration_radps2 * period_s;
-  return last_velocity_radps - last_velocity_radps.cwiseMax(-step).cwiseMin(step);
 }
 
 }  // namespace sidestep

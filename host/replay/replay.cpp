@@ -8,9 +8,9 @@
 #include <sidestep/blackbox_t.hpp>
 #include <stdexcept>
 
+#include "firmware/control/input_gate.h"
 #include "firmware/io/blackbox/blackbox_log.h"
-#include "firmware/io/lcm/admission.h"
-#include "firmware/io/loop/received.h"
+#include "firmware/io/lcm/message_decoder.h"
 
 namespace sidestep {
 namespace {
@@ -30,21 +30,14 @@ struct Held {
   Bytes next;
 };
 
-/// For an admission that takes what was admitted already: nothing of it is out of order, and the log knows all old
-/// places.
-Settings once_more(Settings settings) {
-  settings.timeouts.arm_state_lost_s = settings.timeouts.target_s = settings.timeouts.obstacles_s = -1.0;
-  settings.timeouts.coast_s = 0.0;
-  return settings;
-}
-
 /// The cycles of a log, run again one by one.
 class Rerun {
  public:
   explicit Rerun(const Config& config)
       : config_(config),
-        admission_(config.model.arm.joints, once_more(config.model.settings), false, config.dialect),
-        encoder_(config.model.arm, config.dialect),
+        decoder_(*config.dialect, config.model.arm.joints),
+        gate_(std::make_unique<InputGate>(config.model.arm.joints, config.model.settings, InputSource::kRecording)),
+        encoder_(config.model.arm, *config.dialect),
         obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
 
   /// Returns what is wrong with the event, or "".
@@ -53,7 +46,7 @@ class Rerun {
     if (event.channel == channels.arm_state) arm_.next = bytes_of(event);
     if (event.channel == channels.target) target_.next = bytes_of(event);
     if (event.channel == channels.obstacles) obstacles_->next = bytes_of(event);
-    if (event.channel == kRememberedChannel) obstacle_memory_ = bytes_of(event);
+    if (event.channel == kObstacleValuesChannel) obstacle_values_ = bytes_of(event);
     if (event.channel == kStepArgumentsChannel) return cycle(event);
     if (event.channel == channels.arm_command) compare(bytes_of(event));
     return "";
@@ -71,14 +64,14 @@ class Rerun {
     if (!from_image(event.data, static_cast<size_t>(event.datalen), arguments)) return "a cycle with a wrong checksum";
     Inputs& inputs = arguments.inputs;
     if (!put(arm_, inputs.arm) || !put(target_, inputs.target) || !put(*obstacles_, inputs.obstacles))
-      return "a cycle whose messages are missing or not admitted";
-    if (!put_remembered(obstacles_->message)) return "old places that are none";
+      return "a cycle whose messages are missing or invalid";
+    if (!put_obstacle_values(obstacles_->message)) return "obstacle values of wrong size";
     if (inputs.guide) inputs.guide = &arguments.guide;
     if (found_.cycles++ == 0) state_ = arguments.state;
     const Result result = step(config_.model, state_, inputs, arguments.now_s);
     state_ = result.next;
     seq_ = arguments.seq;
-    // Whether a command was published follows from the log: a lockstep loop answers outside a stream, too.
+    // The log shows whether the command was sent: a lockstep loop also sends commands outside a stream.
     answer_.clear();
     if (result.command.position_rad.size() == 0) return "";
     const Packet packet = encoder_.encode(result.command, arguments.utime, arguments.seq);
@@ -87,26 +80,33 @@ class Rerun {
     return "";
   }
 
-  /// The log holds what was admitted; it is admitted again as having been received when it was, to the last bit.
+  /// The latest message of a channel, as the log has it. Returns false where there is none, or an invalid one.
   template <typename Message>
   bool put(Held<Message>& held, Latest<Message>& latest) {
     if (!latest.message) return true;
-    if (!held.next.empty())
-      held.any = admission_.admit(held.next.data(), held.next.size(), latest.received_s, held.message);
+    if (!held.next.empty()) held.any = accept({held.next.data(), held.next.size()}, latest.received_s, held.message);
     held.next.clear();
     latest.message = &held.message;
     return held.any;
   }
 
-  /// Behind the set that they came with.
-  bool put_remembered(ObstacleSet& set) {
-    if (obstacle_memory_.empty()) return true;
-    const size_t count = obstacle_memory_.size() / sizeof(Obstacle),
-                 room = static_cast<size_t>(kMaxObstacles - set.count);
-    if (obstacle_memory_.size() % sizeof(Obstacle) != 0 || count > room) return false;
-    std::memcpy(static_cast<void*>(set.obstacles.data() + set.count), obstacle_memory_.data(), obstacle_memory_.size());
-    set.count += static_cast<int>(count);
-    obstacle_memory_.clear();
+  template <typename Message>
+  bool accept(Packet packet, double received_s, Message& message) {
+    return !decoder_.decode(packet, message) && gate_->accept(message, received_s);
+  }
+  bool accept(Packet packet, double received_s, ObstacleSet& set) {
+    int64_t utime = 0;
+    return !decoder_.decode(packet, set, utime) && gate_->accept(set, utime, received_s);
+  }
+
+  /// Replaces the set of the message by the one that the cycles used, where the log has it.
+  bool put_obstacle_values(ObstacleSet& set) {
+    if (obstacle_values_.empty()) return true;
+    const size_t count = obstacle_values_.size() / sizeof(Obstacle);
+    if (obstacle_values_.size() % sizeof(Obstacle) != 0 || count > kMaxObstacles) return false;
+    std::memcpy(static_cast<void*>(set.obstacles.data()), obstacle_values_.data(), obstacle_values_.size());
+    set.count = static_cast<int>(count);
+    obstacle_values_.clear();
     return true;
   }
 
@@ -121,12 +121,13 @@ class Rerun {
   }
 
   const Config& config_;
-  Admission admission_;
+  MessageDecoder decoder_;
+  std::unique_ptr<InputGate> gate_;
   Encoder encoder_;
   Held<ArmState> arm_;
   Held<Target> target_;
   std::unique_ptr<Held<ObstacleSet>> obstacles_;
-  Bytes obstacle_memory_;
+  Bytes obstacle_values_;
   State state_;
   int64_t seq_ = 0;
   Bytes answer_;                   ///< the command of the cycle last run

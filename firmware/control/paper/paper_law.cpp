@@ -7,34 +7,36 @@
 
 namespace sidestep {
 
-NominalCommand paper_law(const PaperGains& gains, double period_s, const Situation& now, const Vector3* planned_mps) {
-  const TaskJacobian& jacobian = now.tool_jacobian;
-  const Vector3 v_tool = jacobian.topRows<3>() * now.velocity_radps;
-  const Vector3& p_tool = now.poses.tool_position;
+NominalCommand paper_law(const PaperGains& gains, double period_s, const LawInput& input,
+                         const std::optional<Vector3>& planned_mps) {
+  const TaskJacobian& jacobian = input.tool_jacobian;
+  const Vector3 v_tool = jacobian.topRows<3>() * input.velocity_radps;
+  const Vector3& p_tool = input.poses.tool_position;
 
-  // Force to velocity: unit mass, X = V + F T (paper-notes, "Force to velocity" and item 4).
-  NominalCommand wish;
-  const Vector3 force = attraction(gains, now.target, p_tool, v_tool) + repulsion(gains, now.obstacles, p_tool, v_tool);
+  // Force to velocity: unit mass, X = V + F T (docs/paper.md, "Force to velocity" and item 4).
+  NominalCommand nominal;
+  const Vector3 force =
+      attraction(gains, input.target, p_tool, v_tool) + repulsion(gains, input.obstacles, p_tool, v_tool);
   const bool planned = gains.tool_velocity == ToolVelocity::kPlanned && planned_mps;
-  wish.tool_velocity_mps = (planned ? *planned_mps : v_tool) + force * period_s;
-  const double speed_mps = wish.tool_velocity_mps.norm();
-  wish.task_speed_limited = speed_mps > gains.v_max_mps;
-  if (wish.task_speed_limited) wish.tool_velocity_mps *= gains.v_max_mps / speed_mps;
+  nominal.tool_velocity_mps = (planned ? *planned_mps : v_tool) + force * period_s;
+  const double speed_mps = nominal.tool_velocity_mps.norm();
+  nominal.task_speed_limited = speed_mps > gains.v_max_mps;
+  if (nominal.task_speed_limited) nominal.tool_velocity_mps *= gains.v_max_mps / speed_mps;
 
   TaskVector x(jacobian.rows());
-  x.head<3>() = wish.tool_velocity_mps;
-  if (now.target.tracks_orientation) x.tail<3>() = orientation_rate(gains, now.target, now.poses.tool_rotation);
+  x.head<3>() = nominal.tool_velocity_mps;
+  if (input.target.tracks_orientation) x.tail<3>() = orientation_rate(gains, input.target, input.poses.tool_rotation);
 
   const TaskInverse inverse = invert(gains, jacobian);
-  wish.damping = inverse.lambda;
-  wish.velocity_radps = inverse * x;
+  nominal.damping = inverse.lambda;
+  nominal.velocity_radps = inverse * x;
 
-  const Proximity& nearest = now.clearance.nearest_axis;
-  if (nearest.shape < 0) return wish;
-  wish.beta = task_priority(gains, nearest.axis_distance_m);
-  wish.velocity_radps = (1.0 - wish.beta) * wish.velocity_radps +  // eq (18)
-                        speed_deviation(gains, now.arm, now.poses, nearest, inverse, wish.velocity_radps);
-  return wish;
+  const Proximity& nearest = input.clearance.nearest_axis;
+  if (nearest.shape < 0) return nominal;
+  nominal.beta = task_priority(gains, nearest.axis_distance_m);
+  nominal.velocity_radps = (1.0 - nominal.beta) * nominal.velocity_radps +  // eq (18)
+                           speed_deviation(gains, input.arm, input.poses, nearest, inverse, nominal.velocity_radps);
+  return nominal;
 }
 
 }  // namespace sidestep

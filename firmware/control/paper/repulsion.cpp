@@ -14,7 +14,7 @@ Vector3 repulsion(const PaperGains& gains, const Vector3& obstacle_position_m, c
   Vector3 force = Vector3::Zero();
   if (rho_m <= gains.rho_0_m) force += gains.k_rpos_m2ps2 * (1.0 / rho_m - 1.0 / gains.rho_0_m) * n;
 
-  // Paper-notes item 3: eq (10) as printed pulls the tool after a receding obstacle and is 0/0 at equal speeds.
+  // docs/paper.md item 3: eq (10) as printed pulls the tool after a receding obstacle and is 0/0 at equal speeds.
   const Vector3 closing = obstacle_velocity_mps - tool_velocity_mps;
   if (rho_m <= gains.rho_v_m && closing.dot(n) > 0.0)
     force += gains.k_rvel_m2ps2 * (1.0 / rho_m - 1.0 / gains.rho_v_m) * closing.normalized();

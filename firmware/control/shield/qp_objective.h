@@ -6,33 +6,33 @@
 
 namespace sidestep {
 
-/// What "nearest to the wish" means: |q' - wish|^2 + tool_weight |J (q' - wish)|^2.
+/// The objective of the programme in shield.h: 1/2 |q' - u|^2 + w/2 |J (q' - u)|^2 + sum of 1/2 (s_t / sigma_t)^2.
 struct QpObjective {
-  const JointVector& nominal_radps;
-  const TaskJacobian& tool_jacobian;
-  double tool_weight;     ///< 1/m2
-  double comfort_weight;  ///< of the comfort rows against nearness, s2/m2
+  const JointVector& nominal_radps;   ///< u, n x 1
+  const TaskJacobian& tool_jacobian;  ///< J, 3 x n or 6 x n
+  double tool_weight;                 ///< w, 1/m2
+  double comfort_weight;              ///< 1 / sigma_comfort^2, s2/m2
 };
 
-/// A velocity and what it costs.
 struct QpSolution {
-  JointVector velocity_radps;
-  double cost = 0.0;            ///< half the nearness, and what was given up of the rows
-  double hard_slack_mps = 0.0;  ///< by how much the worst hard row had to be given up
+  JointVector velocity_radps;   ///< q', n x 1
+  double cost = 0.0;            ///< value of the objective
+  double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the hard rows were solved in rounds
 };
 
-/// All rows of a tier are given up by as much as the worst of them, which costs half the square of that over the square
-/// of this, m/s.
+/// Slack scales sigma_t of the hard and the pass tier, m/s. Fixed: their ratio to each other and to 1 rad/s decides the
+/// order of the tiers, not how far rows are violated.
 constexpr double kHardSlackScale_mps = 1e-3;
 constexpr double kPassSlackScale_mps = 3e-2;
 
-inline double slack_scale(const QpObjective& near, Tier tier) {
+/// sigma_t, m/s: with slack s_t the rows of the tier become a_i q' + s_t >= b_i, at the cost 1/2 (s_t / sigma_t)^2.
+inline double slack_scale_mps(const QpObjective& objective, Tier tier) {
   if (tier == Tier::kHard) return kHardSlackScale_mps;
   if (tier == Tier::kPass) return kPassSlackScale_mps;
-  return 1.0 / std::sqrt(near.comfort_weight);
+  return 1.0 / std::sqrt(objective.comfort_weight);
 }
 
-/// A hard row that is given up by less than this is none that the others could hide behind.
+/// A hard slack below this counts as zero: the hard rows are met and no further round is solved.
 constexpr double kNegligibleSlack_mps = 1e-4;
 
 }  // namespace sidestep

@@ -4,9 +4,11 @@
 
 namespace sidestep {
 
-/// The velocity in range nearest to the wish that meets the rows. Always feasible: a tier's rows are given up together,
-/// as little as possible, comfort before pass before hard; of the hard rows the worst first, so that the others do not
-/// suffer for it. Bounded iterations; should the solver fail, the wish clipped into the range.
+/// Solves the programme of shield.h for the given rows, range and objective. Always returns a velocity within the
+/// range: the rows of a tier share one slack, and the slack scales make comfort rows yield before pass rows and these
+/// before hard rows. Where hard rows are violated, the violated ones are frozen at their slack and the others are
+/// solved again, in at most 3 rounds. Each round takes at most 200 iterations. Should the solver fail in the first
+/// round, the result is the nominal velocity clipped to the range; in a later round, the solution of the round before.
 QpSolution solve(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective);
 
 }  // namespace sidestep

@@ -10,112 +10,115 @@ bool leaves(const VelocityRange& range, const JointVector& velocity_radps) {
          (velocity_radps.array() > range.upper_radps.array()).any();
 }
 
-/// (J J^T + 1 / w)^-1 J; J^T of it is what is missing to I in the inverse of the nearness's Hessian, I + w J^T J.
+/// (J J^T + I/w)^-1 J: the factor of the Woodbury identity, so that H^-1 = I - J^T * factor.
 template <int rows>
-TaskJacobian tool_share(const QpObjective& near) {
-  const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = near.tool_jacobian;
+TaskJacobian woodbury_factor(const QpObjective& objective) {
+  const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = objective.tool_jacobian;
   Eigen::Matrix<double, rows, rows> gram = jacobian.lazyProduct(jacobian.transpose());
-  gram.diagonal().array() += 1.0 / near.tool_weight;
+  gram.diagonal().array() += 1.0 / objective.tool_weight;
   return gram.inverse().lazyProduct(jacobian);
 }
 
-/// The wish moved just as far as a few rows ask that it does not meet. They are found by adding the one that lacks
-/// most, until none does; one that no longer holds the wish back goes. When each of them does, there is nothing nearer.
+/// Active-set method: activates the most violated row until none is violated. A row whose multiplier turns negative is
+/// removed; with non-negative multipliers and no violated row the KKT conditions hold.
 class SmallActiveSet {
  public:
-  SmallActiveSet(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& near)
-      : rows_(rows), range_(range), near_(near), velocity_radps_(near.nominal_radps) {
-    if (near.tool_weight > 0.0) return;
-    // Where the tool does not count, no joint speaks for another.
+  SmallActiveSet(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective)
+      : rows_(rows), range_(range), objective_(objective), velocity_radps_(objective.nominal_radps) {
+    if (objective.tool_weight > 0.0) return;
+    // H = I: the bounds of the joints are independent of each other, so clipping is exact.
     velocity_radps_ = velocity_radps_.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
-    cost_ = 0.5 * (velocity_radps_ - near.nominal_radps).squaredNorm();
+    cost_ = 0.5 * (velocity_radps_ - objective.nominal_radps).squaredNorm();
   }
 
   std::optional<QpSolution> solve() {
     if (leaves(range_, velocity_radps_)) return {};
-    const ConstraintRow* worst = most_lacking();
-    if (!worst) return QpSolution{velocity_radps_, cost_};
-    if (near_.tool_weight > 0.0) share_ = near_.tool_jacobian.rows() == 6 ? tool_share<6>(near_) : tool_share<3>(near_);
-    for (int tries = 0; worst; ++tries, worst = most_lacking())
-      if (tries == kMostTries || !also_meet(*worst)) return {};
+    const ConstraintRow* violated = most_violated();
+    if (!violated) return QpSolution{velocity_radps_, cost_};
+    if (objective_.tool_weight > 0.0)
+      woodbury_ =
+          objective_.tool_jacobian.rows() == 6 ? woodbury_factor<6>(objective_) : woodbury_factor<3>(objective_);
+    for (int changes = 0; violated; ++changes, violated = most_violated())
+      if (changes == kMaxChanges || !activate(*violated)) return {};
     const double hard_slack_mps = slack_mps_[static_cast<int>(Tier::kHard)];
     if (leaves(range_, velocity_radps_) || hard_slack_mps > kNegligibleSlack_mps) return {};
     return QpSolution{velocity_radps_, cost_, hard_slack_mps};
   }
 
  private:
-  static constexpr int kFew = 3;
-  static constexpr int kMostTries = 6;  // rows come and go
-  using Few = Eigen::Matrix<double, kFew, 1>;
+  static constexpr int kMaxActive = 3;
+  static constexpr int kMaxChanges = 6;  // twice the capacity: rows may be removed again
+  using Multipliers = Eigen::Matrix<double, kMaxActive, 1>;
 
-  /// A row that is met just so, and the inverse of the Hessian times it.
-  struct Met {
+  struct ActiveRow {
     const ConstraintRow* row;
-    JointVector along;
+    JointVector inverse_hessian_row;  ///< H^-1 a^T
   };
 
-  const ConstraintRow* most_lacking() const {
+  const ConstraintRow* most_violated() const {
     const ConstraintRow* worst = nullptr;
     double most_mps = 1e-12;  // rounding
     for (const ConstraintRow& row : rows_) {
-      const double lack_mps = row.bound - row.row.dot(velocity_radps_) - slack_mps_[static_cast<int>(row.tier)];
-      if (!(lack_mps > most_mps)) continue;  // a wish that is no number goes on as it is, to be found at the end
-      most_mps = lack_mps;
+      const double violation_mps = row.bound - row.row.dot(velocity_radps_) - slack_mps_[static_cast<int>(row.tier)];
+      if (!(violation_mps > most_mps)) continue;  // NaN is no violation: the cycle finds it in the result
+      most_mps = violation_mps;
       worst = &row;
     }
     return worst;
   }
 
-  /// Whether there is a velocity that this row, too, holds back from the wish.
-  bool also_meet(const ConstraintRow& row) {
-    const auto is_row = [&](const Met& met) { return met.row == &row; };
-    if (met_.is_full() || std::any_of(met_.begin(), met_.end(), is_row)) return false;
-    met_.add({&row, eased(row.row)});
-    int weakest = pull();
-    if (pull_[weakest] <= 0.0 && met_[weakest].row != &row) {
-      met_.remove(weakest);
-      weakest = pull();
+  /// Adds a row to the active set. Returns false where no non-negative multipliers exist, or the set is full.
+  bool activate(const ConstraintRow& row) {
+    const auto is_row = [&](const ActiveRow& active) { return active.row == &row; };
+    if (active_.is_full() || std::any_of(active_.begin(), active_.end(), is_row)) return false;
+    active_.add({&row, times_inverse_hessian(row.row)});
+    int least = solve_kkt();
+    if (lambda_[least] <= 0.0 && active_[least].row != &row) {
+      active_.remove(least);
+      least = solve_kkt();
     }
-    return pull_[weakest] > 0.0;
+    return lambda_[least] > 0.0;
   }
 
-  /// How hard each of the rows has to pull so that all are met just so, and where to. Says which pulls least.
-  int pull() {
-    Eigen::Matrix<double, kFew, kFew> gram = Eigen::Matrix<double, kFew, kFew>::Identity();
-    Few lack_mps = Few::Zero();
-    for (int i = 0; i < met_.size(); ++i) {
-      const ConstraintRow& row = *met_[i].row;
-      lack_mps[i] = row.bound - row.row.dot(near_.nominal_radps);
+  /// Solves the KKT system with the active rows as equalities, for the multipliers, the velocity, the slacks and the
+  /// cost. Returns the index of the least multiplier.
+  int solve_kkt() {
+    Eigen::Matrix<double, kMaxActive, kMaxActive> gram = Eigen::Matrix<double, kMaxActive, kMaxActive>::Identity();
+    Multipliers violation_mps = Multipliers::Zero();
+    for (int i = 0; i < active_.size(); ++i) {
+      const ConstraintRow& row = *active_[i].row;
+      violation_mps[i] = row.bound - row.row.dot(objective_.nominal_radps);
       for (int j = 0; j <= i; ++j) {
-        const double give = met_[j].row->tier == row.tier ? slack_scale(near_, row.tier) : 0.0;
-        gram(i, j) = gram(j, i) = row.row.dot(met_[j].along) + give * give;
+        const double sigma_mps = active_[j].row->tier == row.tier ? slack_scale_mps(objective_, row.tier) : 0.0;
+        gram(i, j) = gram(j, i) = row.row.dot(active_[j].inverse_hessian_row) + sigma_mps * sigma_mps;
       }
     }
-    pull_ = gram.llt().solve(lack_mps);
-    cost_ = 0.5 * pull_.dot(lack_mps);
-    velocity_radps_ = near_.nominal_radps;
+    lambda_ = gram.llt().solve(violation_mps);
+    cost_ = 0.5 * lambda_.dot(violation_mps);
+    velocity_radps_ = objective_.nominal_radps;
     slack_mps_ = {};
-    int weakest = 0;
-    for (int i = 0; i < met_.size(); ++i) {
-      const Tier tier = met_[i].row->tier;
-      velocity_radps_ += pull_[i] * met_[i].along;
-      slack_mps_[static_cast<int>(tier)] += pull_[i] * slack_scale(near_, tier) * slack_scale(near_, tier);
-      if (pull_[i] < pull_[weakest]) weakest = i;
+    int least = 0;
+    for (int i = 0; i < active_.size(); ++i) {
+      const Tier tier = active_[i].row->tier;
+      const double sigma_mps = slack_scale_mps(objective_, tier);
+      velocity_radps_ += lambda_[i] * active_[i].inverse_hessian_row;
+      slack_mps_[static_cast<int>(tier)] += lambda_[i] * sigma_mps * sigma_mps;
+      if (lambda_[i] < lambda_[least]) least = i;
     }
-    return weakest;
+    return least;
   }
 
-  JointVector eased(const JointVector& row) const {
-    if (share_.size() == 0) return row;
-    return row - near_.tool_jacobian.transpose().lazyProduct(share_.lazyProduct(row).eval());
+  JointVector times_inverse_hessian(const JointVector& row) const {
+    if (woodbury_.size() == 0) return row;
+    return row - objective_.tool_jacobian.transpose().lazyProduct(woodbury_.lazyProduct(row).eval());
   }
 
   const ConstraintRows& rows_;
   const VelocityRange& range_;
-  const QpObjective& near_;
-  TaskJacobian share_;  ///< of size 0 where the tool does not count
-  BoundedList<Met, kFew> met_;
-  Few pull_;
+  const QpObjective& objective_;
+  TaskJacobian woodbury_;  ///< of size 0 without the tool's cost
+  BoundedList<ActiveRow, kMaxActive> active_;
+  Multipliers lambda_;
   JointVector velocity_radps_;
   std::array<double, kTiers> slack_mps_{};
   double cost_ = 0.0;

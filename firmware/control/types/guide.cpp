@@ -12,8 +12,8 @@ GuidePoint point_of(const Guide& guide, double now_s) {
 
   const double duration_s = guide.time_s[next] - guide.time_s[next - 1];
   const double u = (now_s - guide.time_s[next - 1]) / duration_s;
-  const JointVector way_rad = guide.position_rad[next] - last;
-  return {last + way_rad * (u * u * (3.0 - 2.0 * u)), way_rad * (6.0 * u * (1.0 - u) / duration_s)};
+  const JointVector displacement_rad = guide.position_rad[next] - last;
+  return {last + displacement_rad * (u * u * (3.0 - 2.0 * u)), displacement_rad * (6.0 * u * (1.0 - u) / duration_s)};
 }
 
 }  // namespace sidestep

@@ -7,34 +7,35 @@
 
 namespace sidestep {
 
-/// What foresight expects; values as in controller_status_t.
+/// What foresight predicts for the coming seconds; values as in controller_status_t.
 enum class ForesightStatus : int8_t {
-  kDirect = 0,   ///< the law alone will do
-  kGuided = 1,   ///< there is a way that the law alone would not find
-  kWaiting = 2,  ///< no way is known at present
+  kDirect = 0,   ///< the law alone reaches the target
+  kGuided = 1,   ///< the law alone would not; the arm follows a guide that does
+  kWaiting = 2,  ///< no collision-free path to the target is known at present
 };
 
 constexpr int kMaxKnots = 4;
 
-/// A way in joint space and time. Between two knots every joint moves on a straight line with the profile 3u^2 - 2u^3.
-/// Behind the last the law keeps the tool at the target, with the joints near that knot as far as the tool allows;
-/// unless the outlook is kWaiting: then the arm stays there.
+/// A timed path in joint space, given by its knots. Between two knots every joint moves on a straight line with the
+/// profile 3u^2 - 2u^3. After the last knot the law holds the tool at the target and keeps the joints near that knot as
+/// far as the tool's task leaves freedom; with kWaiting the arm stays at the last knot instead.
 struct Guide {
   ForesightStatus foresight_status = ForesightStatus::kDirect;
-  int knots = 0;  ///< 0: nothing to follow
-  std::array<double, kMaxKnots> time_s{};
+  int knots = 0;                           ///< 0: no path to follow
+  std::array<double, kMaxKnots> time_s{};  ///< increasing, on the clock of the cycle
   std::array<JointVector, kMaxKnots> position_rad;
 
   double end_s() const { return knots > 0 ? time_s[knots - 1] : 0.0; }
 };
 
-/// Where a guide is at one instant.
+/// Position and velocity of a guide at one instant, n x 1 each.
 struct GuidePoint {
   JointVector position_rad;
   JointVector velocity_radps;
 };
 
-/// At rest in the first knot before its time and in the last one after. The guide has at least one knot.
+/// The guide at time now_s: at rest at the first knot before the first knot's time, at rest at the last one after its
+/// time. The guide must have at least one knot.
 GuidePoint point_of(const Guide& guide, double now_s);
 
 }  // namespace sidestep

@@ -1,30 +1,29 @@
 #pragma once
 
 #include "firmware/control/types/messages.h"
-#include "firmware/control/types/settings.h"
 #include "firmware/model/clearance.h"
 
 namespace sidestep {
 
-/// What a law is asked in one cycle.
-struct Situation {
+/// The input of a law in one cycle. Everything is in the base frame, at the time of the cycle.
+struct LawInput {
   const Arm& arm;
   const LinkPoses& poses;
-  const TaskJacobian& tool_jacobian;  ///< of the rows that the target has: 3, or 6 with an orientation
+  const TaskJacobian& tool_jacobian;  ///< 3 x n for a position target, 6 x n for a full pose
   const JointVector& position_rad;    ///< measured
   const JointVector& velocity_radps;  ///< measured
-  const Target& target;               ///< moved forward to the present
+  const Target& target;               ///< extrapolated to the time of the cycle
   const ObstacleView& obstacles;
   const Clearance& clearance;
 };
 
-/// What a law answers.
+/// The output of a law: the joint velocity u before the shield.
 struct NominalCommand {
   JointVector velocity_radps;
-  Vector3 tool_velocity_mps = Vector3::Zero();  ///< X of paper-notes item 4, linear part
-  double beta = 0.0;
-  double damping = 0.0;
-  bool task_speed_limited = false;
+  Vector3 tool_velocity_mps = Vector3::Zero();  ///< commanded tool velocity X (docs/paper.md, item 4), linear part
+  double beta = 0.0;                            ///< task priority, paper eq (19); 0 in our own law
+  double damping = 0.0;                         ///< lambda, paper eq (6)
+  bool task_speed_limited = false;              ///< the tool velocity was clipped to v_max
 };
 
 }  // namespace sidestep

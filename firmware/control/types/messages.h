@@ -7,15 +7,17 @@
 
 namespace sidestep {
 
-/// What goes in and out of a control cycle, as values. The wire formats behind them are in lcmtypes/.
+/// The inputs and outputs of a control cycle as values. Their wire formats are in lcmtypes/.
 
+/// The measured arm. utime is the sender's clock in microseconds.
 struct ArmState {
   int64_t utime = 0;
   JointVector position_rad;
   JointVector velocity_radps;
-  JointVector held_rad{};  ///< what the drives are told to hold, where they say so; size 0: not known
+  JointVector held_rad{};  ///< position that the drives hold, where the driver reports it; size 0: not reported
 };
 
+/// The goal of the tool, base frame. With tracks_orientation the goal is a full pose.
 struct Target {
   int64_t utime = 0;
   Vector3 position_m = Vector3::Zero();
@@ -25,14 +27,18 @@ struct Target {
   Vector3 angular_velocity_radps = Vector3::Zero();
 };
 
+/// The output of a cycle. position_rad is the last commanded position + velocity_radps * period; while the command
+/// closes a large following error, a correction is added to it (command_stream.h).
 struct Command {
-  JointVector position_rad;    ///< where the velocity leads in one period; beside that while an arm is caught up with
+  JointVector position_rad;
   JointVector velocity_radps;  ///< for the coming period
 };
 
-/// Values as in controller_status_t.
+/// Values as in controller_status_t; a unit test compares them.
 enum class Mode : int8_t { kWait = 0, kHold = 1, kTrack = 2, kBrake = 3, kFault = 4 };
 enum class Fault : int32_t { kNone = 0, kArmStateLost = 1, kArmStateInconsistent = 2, kNotFinite = 3 };
+
+/// Bit set of what changed the command in this cycle, or degrades the process.
 enum Limiting : int32_t {
   kLimitingNothing = 0,
   kLimitingVelocity = 1,

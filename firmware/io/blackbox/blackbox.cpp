@@ -7,38 +7,39 @@
 #include <filesystem>
 
 #include "firmware/base/realtime.h"
+#include "firmware/io/lcm/message_bytes.h"
 
 namespace sidestep {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLookAround_s = 0.02;
-constexpr size_t kMostLogs = 20;  // in the folder; the oldest give way
+constexpr double kPollEvery_s = 0.02;
+constexpr size_t kMaxLogs = 20;  // in the folder; the oldest are removed
 
-constexpr size_t kObstacle_bytes = 133, kOtherMessages_bytes = 400;
+constexpr size_t kOtherMessagesBytes = 400;  // arm state and target of 10 joints, with the ring's own words
 constexpr double kUsualObstacles = 64, kUsualSets_hz = 100;
 
-/// Enough for the seconds with a usual number of obstacles. With more of them the log reaches back less far, but always
-/// over a few of the largest messages.
+/// Enough for the configured seconds with a usual number of obstacles. With more obstacles the log reaches back less
+/// far, but always over a few of the largest sets.
 size_t ring_bytes(const Config& config) {
   const double cycles_per_s = config.model.settings.rate_hz;
-  const double bytes_per_s = cycles_per_s * static_cast<double>(sizeof(RecordedCycle) + kOtherMessages_bytes) +
-                             kUsualSets_hz * kUsualObstacles * kObstacle_bytes;
-  return static_cast<size_t>(config.blackbox.seconds * bytes_per_s) + 4 * kObstacle_bytes * kMaxObstacles;
+  const double bytes_per_s = cycles_per_s * static_cast<double>(sizeof(RecordedCycle) + kOtherMessagesBytes) +
+                             kUsualSets_hz * kUsualObstacles * kObstacleBytes;
+  return static_cast<size_t>(config.blackbox.seconds * bytes_per_s) + 4 * sizeof(Obstacle) * kMaxObstacles;
 }
 
 bool is_log(const fs::path& file) {
   return file.filename().string().rfind("blackbox-", 0) == 0 && file.extension() == ".lcmlog";
 }
 
-/// Their names sort by time.
+/// The names sort by time.
 void remove_oldest(const fs::path& folder) {
   std::vector<fs::path> logs;
   for (const auto& entry : fs::directory_iterator(folder))
     if (is_log(entry.path())) logs.push_back(entry.path());
   std::sort(logs.begin(), logs.end());
-  for (size_t i = 0; i + kMostLogs < logs.size(); ++i) fs::remove(logs[i]);
+  for (size_t i = 0; i + kMaxLogs < logs.size(); ++i) fs::remove(logs[i]);
 }
 
 fs::path name_for(const std::string& reason) {
@@ -51,43 +52,43 @@ fs::path name_for(const std::string& reason) {
 }  // namespace
 
 Blackbox::Blackbox(const Config& config, std::atomic<bool>& requested)
-    : config_(config), requested_(requested), ring_(ring_bytes(config)), copy_(ring_), writing_([this] { attend(); }) {}
+    : config_(config), requested_(requested), ring_(ring_bytes(config)), copy_(ring_), writing_([this] { run(); }) {}
 
 Blackbox::~Blackbox() {
   end_ = true;
   writing_.join();
 }
 
-/// A message is kept once, and again before it would be overwritten while it is still in use. Returns whether it is
-/// now.
+/// A message is recorded once, and again before it would be overwritten while it is still in use. Returns whether it
+/// was recorded now.
 template <typename Message>
-bool Blackbox::keep(RecordKind kind, const Received<Message>& mail) {
+bool Blackbox::record(RecordKind kind, const Received<Message>& received) {
   Last& last = last_[static_cast<size_t>(kind)];
-  const bool fades = ring_.written_bytes() - last.at_bytes > ring_.capacity_bytes() / 2;
-  if (mail.count == 0 || (mail.count == last.count && !fades)) return false;
-  last = {mail.count, ring_.written_bytes()};
-  ring_.write(static_cast<uint8_t>(kind), mail.bytes.data(), mail.bytes.size());
+  const bool fading = ring_.written_bytes() - last.at_bytes > ring_.capacity_bytes() / 2;
+  if (received.count == 0 || (received.count == last.count && !fading)) return false;
+  last = {received.count, ring_.written_bytes()};
+  ring_.write(static_cast<uint8_t>(kind), received.bytes.data(), received.bytes.size());
   return true;
 }
 
-void Blackbox::keep(const LatestInputs& post, const RecordedCycle& cycle) {
-  keep(RecordKind::kArmState, post.arm);
-  keep(RecordKind::kTarget, post.target);
-  const ObstacleSet& set = post.obstacles.message;
-  if (keep(RecordKind::kObstacles, post.obstacles) && set.obstacle_memory > 0)
-    ring_.write(static_cast<uint8_t>(RecordKind::kRemembered),
-                &set.obstacles[static_cast<size_t>(set.count - set.obstacle_memory)],
-                static_cast<size_t>(set.obstacle_memory) * sizeof(Obstacle));
+void Blackbox::record(const LatestInputs& latest, const RecordedCycle& cycle) {
+  record(RecordKind::kArmState, latest.arm);
+  record(RecordKind::kTarget, latest.target);
+  const Received<ObstacleSet>& obstacles = latest.obstacles;
+  const ObstacleSet& set = obstacles.message;
+  if (record(RecordKind::kObstacles, obstacles) && (set.remembered > 0 || obstacles.bytes.empty()))
+    ring_.write(static_cast<uint8_t>(RecordKind::kObstacleValues), set.obstacles.data(),
+                static_cast<size_t>(set.count) * sizeof(Obstacle));
   ring_.write(static_cast<uint8_t>(RecordKind::kCycle), &cycle, sizeof cycle);
   if (cycle.report.mode == Mode::kFault && mode_ != Mode::kFault) fault_ = true;
   mode_ = cycle.report.mode;
 }
 
-/// Faults may come thick and fast; a log holds all that have come since the one before.
-void Blackbox::attend() {
+/// After a log of a fault the next one waits for Config::blackbox.seconds; it then holds all faults since.
+void Blackbox::run() {
   for (bool last = false; !last;) {
     last = end_;
-    if (!last) sleep_until(monotonic_s() + kLookAround_s);
+    if (!last) sleep_until(monotonic_s() + kPollEvery_s);
     if (requested_.exchange(false)) write("request");
     if ((!last && monotonic_s() < quiet_until_s_) || !fault_.exchange(false)) continue;
     write("fault");

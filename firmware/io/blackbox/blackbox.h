@@ -3,29 +3,29 @@
 #include <thread>
 
 #include "firmware/io/blackbox/blackbox_log.h"
-#include "firmware/io/loop/received.h"
+#include "firmware/io/lcm/received.h"
 
 namespace sidestep {
 
-/// Remembers the last seconds of a loop. A thread of its own, without real-time priority, writes them into a file of
-/// Config::blackbox.folder when a fault comes up or somebody asks; the loop never waits for it.
+/// Records the last seconds of a loop in a ring. Its own thread, without real-time priority, writes them to a file in
+/// Config::blackbox.folder after a fault or on request; the loop never waits for it.
 class Blackbox {
  public:
-  /// Allocates all it needs. To be made by a thread that has no real-time priority yet: its own inherits that.
-  /// `requested` asks for a log and is taken back when it is being written; config and it outlive this.
+  /// Allocates all memory. Call it from a thread without real-time priority, since the own thread inherits the
+  /// priority. `requested` requests a log and is reset when the log is written; config and `requested` outlive this.
   Blackbox(const Config& config, std::atomic<bool>& requested);
-  ~Blackbox();  ///< first writes what has been asked for
+  ~Blackbox();  ///< first writes a requested log
 
-  /// Keeps a cycle and the messages it used; for one thread, which neither waits nor allocates.
-  void keep(const LatestInputs& post, const RecordedCycle& cycle);
+  /// Records a cycle and the messages that it used. For one thread, which neither waits nor allocates.
+  void record(const LatestInputs& latest, const RecordedCycle& cycle);
 
   /// The last log could not be written.
   bool failed() const { return failed_; }
 
  private:
   template <typename Message>
-  bool keep(RecordKind kind, const Received<Message>& mail);
-  void attend();
+  bool record(RecordKind kind, const Received<Message>& received);
+  void run();
   void write(const std::string& reason);
 
   struct Last {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "firmware/base/realtime.h"
+#include "firmware/io/lcm/obstacle_encoder.h"
 
 namespace sidestep {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 using Record = RecordRing::Copy::Record;
 using Messages = std::array<Record, kMessageKinds>;
 
-/// Calls use(cycle, messages) for every cycle since a time all of whose messages are there. `messages` are those that
-/// came after the cycle before, the others are empty.
+/// Calls use(cycle, messages) for every cycle since since_s whose messages are all in the ring. `messages` are those
+/// received after the previous cycle; the others are empty.
 template <typename Use>
 void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
   Messages messages;
@@ -31,13 +32,13 @@ void for_each_cycle(RecordRing::Copy& records, double since_s, Use&& use) {
     if (record.kind != static_cast<uint8_t>(RecordKind::kCycle)) {
       messages[record.kind] = record;
       if (record.kind == static_cast<uint8_t>(RecordKind::kObstacles))
-        messages[static_cast<size_t>(RecordKind::kRemembered)] = {};
+        messages[static_cast<size_t>(RecordKind::kObstacleValues)] = {};
       seen[record.kind] = true;
       continue;
     }
     RecordedCycle cycle;
     std::memcpy(static_cast<void*>(&cycle), record.bytes, sizeof cycle);
-    if (cycle.report.guide) cycle.report.guide = &cycle.arguments.guide;  // it pointed to where the cycle was made
+    if (cycle.report.guide) cycle.report.guide = &cycle.arguments.guide;  // the recorded pointer is not valid
     const Inputs& inputs = cycle.arguments.inputs;
     if (cycle.arguments.now_s < since_s || lacks(inputs.arm, RecordKind::kArmState) ||
         lacks(inputs.target, RecordKind::kTarget) || lacks(inputs.obstacles, RecordKind::kObstacles))
@@ -53,7 +54,7 @@ class Log {
       : file_(file),
         log_(file, "w"),
         channels_(config.channels),
-        encoder_(config.model.arm, config.dialect),
+        encoder_(config.model.arm, *config.dialect),
         epoch_s_(wall_s() - newest_s) {
     if (!log_.good()) throw std::runtime_error(fmt::format("{}: {}", file, std::strerror(errno)));
   }
@@ -68,11 +69,7 @@ class Log {
     const StepArguments& arguments = cycle.arguments;
     write_new(channels_.arm_state, arguments.inputs.arm, messages, RecordKind::kArmState);
     write_new(channels_.target, arguments.inputs.target, messages, RecordKind::kTarget);
-    const Record& obstacle_memory = messages[static_cast<size_t>(RecordKind::kRemembered)];
-    if (write_new(channels_.obstacles, arguments.inputs.obstacles, messages, RecordKind::kObstacles) &&
-        obstacle_memory.size > 0)
-      write(kRememberedChannel, arguments.inputs.obstacles.received_s,
-            Packet{obstacle_memory.bytes, obstacle_memory.size});
+    write_obstacles(arguments.inputs.obstacles, messages);
     StepArgumentsImage image;
     to_image(arguments, image);
     write(kStepArgumentsChannel, arguments.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
@@ -86,13 +83,34 @@ class Log {
   }
 
  private:
-  /// A message that is long in use stands in the ring again and again, in the log once. Returns whether it is new.
+  /// Of a set that was merged from several senders there is no message: it is encoded for the readers of the log.
+  void write_obstacles(const Latest<ObstacleSet>& latest, const Messages& messages) {
+    const Record& values = messages[static_cast<size_t>(RecordKind::kObstacleValues)];
+    const bool merged = messages[static_cast<size_t>(RecordKind::kObstacles)].size == 0;
+    if (merged && latest.count != written_[static_cast<size_t>(RecordKind::kObstacles)])
+      write(channels_.obstacles, latest.received_s, encode_values(values, latest.received_s));
+    if (write_new(merged ? "" : channels_.obstacles, latest, messages, RecordKind::kObstacles) && values.size > 0)
+      write(kObstacleValuesChannel, latest.received_s, Packet{values.bytes, values.size});
+  }
+
+  Packet encode_values(const Record& values, double received_s) {
+    obstacle_encoder_.begin(static_cast<int64_t>(received_s * 1e6));
+    for (size_t at = 0; at + sizeof(Obstacle) <= values.size; at += sizeof(Obstacle)) {
+      Obstacle obstacle;
+      std::memcpy(static_cast<void*>(&obstacle), values.bytes + at, sizeof obstacle);
+      obstacle_encoder_.add(obstacle);
+    }
+    return obstacle_encoder_.finish();
+  }
+
+  /// A message in use for long stands in the ring repeatedly, in the log once. Returns whether it is new. An empty
+  /// channel: it is only marked as written.
   template <typename Message>
   bool write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, RecordKind kind) {
     const auto k = static_cast<size_t>(kind);
     if (latest.count == written_[k]) return false;
     written_[k] = latest.count;
-    write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
+    if (!channel.empty()) write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
     return true;
   }
 
@@ -102,6 +120,7 @@ class Log {
   lcm::LogFile log_;
   Channels channels_;
   Encoder encoder_;
+  ObstacleEncoder obstacle_encoder_{kMaxObstacles};
   double epoch_s_;
   std::array<int64_t, kMessageKinds> written_{};  ///< counts of the messages last written
 };

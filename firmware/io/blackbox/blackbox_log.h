@@ -9,29 +9,30 @@
 
 namespace sidestep {
 
-/// What stands in a blackbox's ring: messages as they came, each before the first cycle that uses it, and cycles.
-/// Behind a set of obstacles the old places that count with it, as they lie in memory: they tell of messages between
-/// two cycles, and of a time before the ring.
-enum class RecordKind : uint8_t { kArmState, kTarget, kObstacles, kRemembered, kCycle };
+/// Kinds of records in a blackbox's ring. Messages are stored as they came, each before the first cycle that uses it.
+/// kObstacleValues follows an obstacle message whose set the cycles used with other values than the message holds: with
+/// remembered obstacles, or merged from several senders (then the message itself is empty). It is the whole set.
+enum class RecordKind : uint8_t { kArmState, kTarget, kObstacles, kObstacleValues, kCycle };
 constexpr size_t kMessageKinds = 4;
 
+/// One cycle with its result.
 struct RecordedCycle {
   StepArguments arguments;
-  bool commanded = false;
+  bool commanded = false;  ///< the command was sent
   Command command;
   Report report;
   CycleRecord record;
 };
 
-/// Channels of a log beside the usual ones: a blackbox_t; old places, each an Obstacle as it lies in memory; the
-/// MomentImage of every cycle.
+/// Channels of a log besides the usual ones: a blackbox_t; obstacle values, each an Obstacle as it lies in memory; the
+/// StepArgumentsImage of every cycle.
 constexpr const char* kBlackboxChannel = "BLACKBOX";
-constexpr const char* kRememberedChannel = "BLACKBOX_OLD_PLACES";
+constexpr const char* kObstacleValuesChannel = "BLACKBOX_OBSTACLES";
 constexpr const char* kStepArgumentsChannel = "BLACKBOX_CYCLE";
 
-/// Writes the last Config::blackbox.seconds of the records as an lcm-logger log and returns the number of cycles. It
-/// begins with the first cycle all of whose messages are there. Throws std::runtime_error, one line, when the file
-/// cannot be written.
+/// Writes the last Config::blackbox.seconds of the records as an lcm-logger log and returns the number of cycles. The
+/// log begins with the first cycle whose messages are all in the ring. Throws std::runtime_error, one line, when the
+/// file cannot be written.
 int64_t write_blackbox_log(const std::string& file, const Config& config, const std::string& reason,
                            RecordRing::Copy& records);
 

@@ -7,21 +7,21 @@
 
 namespace sidestep {
 
-/// Records of any size and kind, the oldest overwritten by the newest. One thread writes and never waits; any other may
-/// take a copy meanwhile.
+/// A ring of records of any size and kind; new records overwrite the oldest. One thread writes and never waits; any
+/// other thread may copy the ring at the same time.
 class RecordRing {
  public:
-  /// Holds at least so many bytes; all memory is touched here.
+  /// bytes: least capacity. Touches all memory, so that later writes cause no page fault.
   explicit RecordRing(size_t bytes);
 
   /// Returns false for a record that is larger than half the ring; it is dropped.
   bool write(uint8_t kind, const void* bytes, size_t size);
 
-  /// Bytes written since the start, with what comes on top of the records; for the writing thread.
+  /// Bytes written since the start, record headers included; for the writing thread.
   uint64_t written_bytes() const { return 8 * head_.load(std::memory_order_relaxed); }
   size_t capacity_bytes() const { return 8 * (mask_ + 1); }
 
-  /// What a ring held at some moment.
+  /// The content of a ring at one instant.
   class Copy {
    public:
     explicit Copy(const RecordRing& ring) : words_(ring.mask_ + 1) {}
@@ -40,7 +40,7 @@ class RecordRing {
     std::vector<uint64_t> words_;
     size_t begin_ = 0, at_ = 0, end_ = 0;
   };
-  /// Records that are overwritten while they are copied are left out. The copy can be used again and again.
+  /// Skips records that are overwritten during the copy. The copy can be reused.
   void copy(Copy& copy) const;
 
  private:

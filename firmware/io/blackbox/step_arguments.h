@@ -4,8 +4,9 @@
 
 namespace sidestep {
 
-/// Everything that a cycle is given beyond the model, and what names its command. A blackbox keeps it as it lies in
-/// memory: bit for bit, and nothing added to a state can be forgotten. Its pointers mean nothing to another process.
+/// The arguments of one call of step() besides the model, and the numbers that its command was sent with. The blackbox
+/// stores them as they lie in memory: bit for bit, and complete whatever is added to a state. The pointers in them are
+/// not valid in another process.
 struct StepArguments {
   int64_t utime = 0;
   int64_t seq = 0;
@@ -15,7 +16,7 @@ struct StepArguments {
   Guide guide;  ///< what inputs.guide points at, if anything
 };
 
-/// How a moment stands in a log: behind a checksum.
+/// The arguments as stored in a log, after a checksum.
 struct StepArgumentsImage {
   uint64_t checksum;
   uint8_t bytes[sizeof(StepArguments)];
@@ -23,7 +24,7 @@ struct StepArgumentsImage {
 
 void to_image(const StepArguments& arguments, StepArgumentsImage& image);
 
-/// Returns false, and leaves the moment alone, when these bytes are no image of one.
+/// Returns false and leaves the arguments unchanged when these bytes are no valid image.
 bool from_image(const void* bytes, size_t size, StepArguments& arguments);
 
 }  // namespace sidestep

@@ -190,15 +190,16 @@ void read_foresight(Section section, ForesightSettings& foresight) {
 }
 
 void read_dialect(Section& root, Config& config) {
-  std::string dialect = "sidestep";
-  root.choice("dialect", dialect, {"sidestep", "iiwa"});
-  if (dialect != "iiwa") return;
-  if (config.model.arm.joints != kIiwaJoints)
-    root.fail("dialect", fmt::format("iiwa is for {} joints, the arm has {}", kIiwaJoints, config.model.arm.joints));
-  config.dialect = Dialect::kIiwa;
-  config.model.settings.start_guard_s = kIiwaStartGuard_s;
-  config.channels.arm_state = "IIWA_STATUS";
-  config.channels.arm_command = "IIWA_COMMAND";
+  std::string name = kSidestepDialect.name;
+  root.choice("dialect", name, dialect_names());
+  const Dialect& dialect = dialect_named(name);
+  const int joints = config.model.arm.joints;
+  if (dialect.joints != 0 && dialect.joints != joints)
+    root.fail("dialect", fmt::format("{} is for {} joints, the arm has {}", name, dialect.joints, joints));
+  config.dialect = &dialect;
+  config.model.settings.start_guard_s = dialect.start_guard_s;
+  config.channels.arm_state = dialect.arm_state_channel;
+  config.channels.arm_command = dialect.arm_command_channel;
 }
 
 Robot read_robot(Section section, const std::string& config_file, const Overrides& overrides) {
@@ -232,7 +233,6 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   std::string law = "sidestep";
   root.choice("law", law, {"sidestep", "paper"});
   if (!overrides.law.empty()) law = overrides.law;
-  settings.law = law == "paper" ? Law::kPaper : Law::kSidestep;
 
   config.robot = read_robot(root.section("robot"), file, overrides);
   const Robot& robot = config.robot;
@@ -252,6 +252,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_shield(root.section("shield"), settings.shield);
   read_foresight(root.section("foresight"), settings.foresight);
   config.model.surroundings = read_surroundings(root);
+  use_law(settings, law == "paper" ? Law::kPaper : Law::kSidestep);
   root.finish();
   config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // takes a while
   return config;

@@ -1,31 +1,24 @@
 #include "firmware/io/lcm/encoder.h"
 
 #include <algorithm>
-#include <array>
-#include <drake/lcmt_iiwa_command.hpp>
 #include <sidestep/controller_status_t.hpp>
-#include <sidestep/joint_command_t.hpp>
 #include <sidestep/loop_timing_t.hpp>
 #include <type_traits>
 #include <vector>
 
+#include "firmware/io/lcm/arm_codec.h"
 #include "firmware/model/kinematics.h"
 
 namespace sidestep {
 namespace {
 
-constexpr size_t kLargest_bytes = 1024;
 constexpr size_t kLongestText = 200;
 
 void copy(const Vector3& from, double* to) {
   Eigen::Map<Vector3>(to, 3) = from;
 }
 
-void copy(const JointVector& from, std::vector<double>& to) {
-  to.assign(from.data(), from.data() + from.size());
-}
-
-/// Where the tool will be along the guide, at even times.
+/// The tool positions along the guide at even times, from now to its end; zeros without a guide.
 void encode_guide_path(const Arm& arm, const Report& report, controller_status_t& message) {
   constexpr int kPoints = std::extent_v<decltype(message.guide_tool)>;
   std::fill_n(&message.guide_tool[0][0], 3 * kPoints, 0.0);
@@ -49,29 +42,16 @@ durations_t summary(const Histogram& histogram) {
 }  // namespace
 
 struct Encoder::Messages {
+  std::unique_ptr<ArmCodec> arm;
   std::vector<std::string> shape_links;
-  Dialect dialect;
-  joint_command_t command;
-  drake::lcmt_iiwa_command iiwa_command;
   controller_status_t status;
   loop_timing_t timing;
-  std::array<uint8_t, kLargest_bytes> bytes;
-
-  template <typename Message>
-  Packet packet(const Message& message) {
-    const int size = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    return {bytes.data(), size > 0 ? static_cast<size_t>(size) : 0};
-  }
+  PacketBuffer buffer;
 };
 
-Encoder::Encoder(const Arm& arm, Dialect dialect) : arm_(arm), messages_(std::make_unique<Messages>()) {
+Encoder::Encoder(const Arm& arm, const Dialect& dialect) : arm_(arm), messages_(std::make_unique<Messages>()) {
+  messages_->arm = dialect.make_codec(arm.joints);
   for (const LinkShape& shape : arm.shapes) messages_->shape_links.push_back(shape.link.substr(0, kLongestText));
-  messages_->dialect = dialect;
-  messages_->command.num_joints = messages_->iiwa_command.num_joints = arm.joints;
-  for (auto* per_joint : {&messages_->command.joint_position, &messages_->command.joint_velocity,
-                          &messages_->iiwa_command.joint_position})
-    per_joint->resize(static_cast<size_t>(arm.joints));
-  messages_->iiwa_command.num_torques = 0;  // it is moved by position alone
   messages_->status.nearest_link.reserve(kLongestText);
   messages_->status.message.reserve(2 * kLongestText);
 }
@@ -79,18 +59,7 @@ Encoder::Encoder(const Arm& arm, Dialect dialect) : arm_(arm), messages_(std::ma
 Encoder::~Encoder() = default;
 
 Packet Encoder::encode(const Command& command, int64_t utime, int64_t seq) {
-  if (messages_->dialect == Dialect::kIiwa) {
-    drake::lcmt_iiwa_command& message = messages_->iiwa_command;
-    message.utime = utime;
-    copy(command.position_rad, message.joint_position);
-    return messages_->packet(message);
-  }
-  joint_command_t& message = messages_->command;
-  message.utime = utime;
-  message.seq = seq;
-  copy(command.position_rad, message.joint_position);
-  copy(command.velocity_radps, message.joint_velocity);
-  return messages_->packet(message);
+  return messages_->arm->encode(command, utime, seq);
 }
 
 Packet Encoder::encode(const Report& report, const CycleRecord& record) {
@@ -121,10 +90,10 @@ Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   message.guide_horizon = report.guide_horizon_s;
   encode_guide_path(arm_, report, message);
   if (*record.rejected_reason) message.message.append("; rejected: ").append(record.rejected_reason);
-  return messages_->packet(message);
+  return messages_->buffer.encode(message);
 }
 
-Packet Encoder::encode(const Timing& timing, int64_t utime) {
+Packet Encoder::encode(const LoopTiming& timing, int64_t utime) {
   loop_timing_t& message = messages_->timing;
   message.utime = utime;
   message.period = timing.period_s;
@@ -138,7 +107,7 @@ Packet Encoder::encode(const Timing& timing, int64_t utime) {
   message.law = summary(timing.stages[2]);
   message.shield = summary(timing.stages[3]);
   message.gate = summary(timing.stages[4]);
-  return messages_->packet(message);
+  return messages_->buffer.encode(message);
 }
 
 }  // namespace sidestep

@@ -5,12 +5,12 @@
 namespace sidestep {
 
 Packet LinkEncoder::encode(const ArmState& arm, int64_t utime) {
-  const LinkPoses poses = forward_kinematics(config_.model.arm, arm.position_rad);
+  const LinkPoses poses = forward_kinematics(arm_, arm.position_rad);
   encoder_.begin(utime);
   int id = 0;
-  for (const LinkShape& shape : config_.model.arm.shapes) {
-    if (shape.below_arm) continue;  // the neighbour may stand on it, too
-    Obstacle link = transformed(config_.neighbours.world_from_base, link_obstacle(poses, shape, arm.velocity_radps));
+  for (const LinkShape& shape : arm_.shapes) {
+    if (shape.below_arm) continue;
+    Obstacle link = transformed(world_from_base_, link_obstacle(poses, shape, arm.velocity_radps));
     link.id = id++;
     encoder_.add(link);
   }

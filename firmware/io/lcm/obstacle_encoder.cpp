@@ -11,15 +11,15 @@ void copy(const Vector3& from, double* to) {
   Eigen::Map<Vector3>(to, 3) = from;
 }
 
-void encode_shape(int8_t shape, const Quaternion& turn, const Vector3& size_m, obstacle_t& message) {
+void encode_shape(int8_t shape, const Quaternion& orientation, const Vector3& size_m, obstacle_t& message) {
   message.shape = shape;
-  const double wxyz[] = {turn.w(), turn.x(), turn.y(), turn.z()};
+  const double wxyz[] = {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
   std::copy(wxyz, wxyz + 4, message.quaternion);
   copy(size_m, message.size);
 }
 
 void encode_shape(const Obstacle& obstacle, obstacle_t& message) {
-  if (obstacle.is_box()) {
+  if (obstacle.shape == Shape::kBox) {
     const Box box = box_of(obstacle);
     return encode_shape(obstacle_t::BOX, Quaternion(box.axes), 2.0 * box.half_m, message);
   }
@@ -42,16 +42,16 @@ obstacle_t to_message(const Obstacle& obstacle) {
 }  // namespace
 
 struct ObstacleEncoder::Messages {
-  size_t most;
+  size_t max;
   obstacles_t all;
   std::vector<uint8_t> bytes;
 };
 
-ObstacleEncoder::ObstacleEncoder(int most_obstacles)
-    : messages_(new Messages{static_cast<size_t>(most_obstacles), {}, {}}) {
+ObstacleEncoder::ObstacleEncoder(int max_obstacles)
+    : messages_(new Messages{static_cast<size_t>(max_obstacles), {}, {}}) {
   obstacles_t& all = messages_->all;
-  all.obstacles.resize(messages_->most);
-  all.num_obstacles = most_obstacles;
+  all.obstacles.resize(messages_->max);
+  all.num_obstacles = max_obstacles;
   messages_->bytes.resize(static_cast<size_t>(all.getEncodedSize()));
 }
 
@@ -64,12 +64,12 @@ void ObstacleEncoder::begin(int64_t utime) {
 
 void ObstacleEncoder::add(const Obstacle& obstacle) {
   const auto next = static_cast<size_t>(messages_->all.num_obstacles++);
-  if (next < messages_->most) messages_->all.obstacles[next] = to_message(obstacle);
+  if (next < messages_->max) messages_->all.obstacles[next] = to_message(obstacle);
 }
 
 Packet ObstacleEncoder::finish() {
   std::vector<uint8_t>& bytes = messages_->bytes;
-  if (static_cast<size_t>(messages_->all.num_obstacles) > messages_->most) return {};
+  if (static_cast<size_t>(messages_->all.num_obstacles) > messages_->max) return {};
   const int size = messages_->all.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   return {bytes.data(), static_cast<size_t>(size)};
 }

@@ -4,43 +4,49 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/io/config/config.h"
-#include "firmware/io/lcm/encoder.h"
+#include "firmware/control/message_order.h"
+#include "firmware/model/obstacle.h"
 
 namespace sidestep {
 
-/// Joins the obstacles on our own channel and the links of the neighbours into one message in our base frame. Where
-/// nobody else is listened to, messages pass as they are.
+/// Merges the obstacle sets of several senders into one set in the base frame: the own OBSTACLES channel (part 0) and
+/// the links of each neighbour arm (parts 1 to n, in the world frame).
 ///
-/// The whole is as old as its oldest part: what was heard later is moved back to then. So a neighbour that falls silent
-/// is unknown, exactly as obstacles are that are no longer reported.
+/// The merged set is as old as its oldest part; newer parts are extrapolated back to that time. A neighbour that stops
+/// sending thus makes the whole set time out, exactly as missing obstacles do. Obstacle i of neighbour k gets the id
+/// -(10000 k + i), where i counts within the neighbour's message.
 class ObstacleMerger {
  public:
-  explicit ObstacleMerger(const Config& config);
+  /// timeout_s: largest age of a part, timeouts.obstacles_s.
+  ObstacleMerger(size_t neighbours, const Eigen::Isometry3d& base_from_world, double timeout_s);
   ~ObstacleMerger();
 
-  struct Whole {
-    Packet packet;  ///< an obstacles_t, valid until the next call
-    double age_s;   ///< of its oldest part
-  };
-  /// Takes a message from outside: of our own channel (part 0) or of the k-th neighbour (part k). Nothing comes of one
-  /// that is bad, of more obstacles than a message holds, or while a part is missing or too old.
-  std::optional<Whole> join(size_t part, const void* bytes, size_t size, double now_s);
+  /// The set to decode the next message of a part into; its previous content is arbitrary.
+  ObstacleSet& draft(size_t part);
 
-  int64_t rejected() const;
-  const char* last_reason() const { return reason_; }  ///< static text; "" when nothing was rejected
+  /// Takes the draft of a part, received at now_s; drops it when it is late or repeated.
+  bool accept(size_t part, int64_t utime, double now_s);
+
+  struct Merged {
+    int64_t utime;
+    double age_s;  ///< of the oldest part
+  };
+  /// Writes the merged set; nothing while a part is missing or too old, or when the set would exceed kMaxObstacles.
+  /// Does not allocate.
+  std::optional<Merged> merge(double now_s, ObstacleSet& merged);
+
+  /// The last merge() failed because of the number of obstacles.
+  bool too_many() const { return too_many_; }
 
  private:
   struct Part;
   double oldest_s() const;
-  void add(const Part& part, int number, double at_s);
+  void add(const Part& part, int number, double at_s, ObstacleSet& merged);
 
-  double limit_s_;
+  double timeout_s_;
   int64_t utime_ = 0;
-  int64_t too_many_ = 0;
-  const char* reason_ = "";
-  std::vector<std::unique_ptr<Part>> parts_;  ///< none where nobody is listened to
-  std::unique_ptr<class ObstacleEncoder> whole_;
+  bool too_many_ = false;
+  std::vector<std::unique_ptr<Part>> parts_;
 };
 
 }  // namespace sidestep

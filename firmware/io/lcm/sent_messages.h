@@ -6,18 +6,18 @@
 
 namespace sidestep {
 
-/// Tells messages that this process has sent from those of others on the same channel, by their utime. One thread
-/// sends, another may ask.
+/// The utimes of the last messages that this process sent on a channel, to distinguish them from messages of other
+/// senders there. One thread sends, another may query.
 class SentMessages {
  public:
-  /// Before the message goes out.
+  /// To be called before the message is sent.
   void sent(int64_t utime) {
     const unsigned n = count_.load(std::memory_order_relaxed);
     utimes_[n % kKept].store(utime, std::memory_order_relaxed);
     count_.store(n + 1, std::memory_order_release);
   }
 
-  /// Whether one of the last messages had this utime; the newest are looked at first.
+  /// Whether one of the last messages had this utime; the search starts at the newest.
   bool has(int64_t utime) const {
     const unsigned newest = count_.load(std::memory_order_acquire);
     for (unsigned i = 1; i <= kKept && i <= newest; ++i)
@@ -26,7 +26,7 @@ class SentMessages {
   }
 
  private:
-  static constexpr unsigned kKept = 1024;  // more than can wait in a queue
+  static constexpr unsigned kKept = 1024;  // more than the receive queue holds
   std::array<std::atomic<int64_t>, kKept> utimes_{};
   std::atomic<unsigned> count_{0};
 };

@@ -7,24 +7,17 @@
 #include <stdexcept>
 
 #include "firmware/io/lcm/link_encoder.h"
+#include "firmware/io/lcm/message_bytes.h"
 #include "firmware/io/lcm/sent_messages.h"
 
 namespace sidestep {
 namespace {
 
-// Deep enough that a burst never makes LCM refuse the newest message (a full queue does); receive() drains it.
-constexpr int kQueue_messages = 256;
+// A full queue refuses the newest message; this one is deep enough for a burst, and receive() drains it.
+constexpr int kQueueMessages = 256;
 
 void call_handler(const lcm_recv_buf_t* buffer, const char*, void* handler) {
-  (*static_cast<const ByteHandler*>(handler))(buffer->data, buffer->data_size);
-}
-
-/// The utime that follows the fingerprint in every message; 0 when there is none.
-int64_t utime_of(const void* bytes, size_t size) {
-  uint64_t utime = 0;
-  if (size < 16) return 0;
-  for (int i = 8; i < 16; ++i) utime = utime << 8 | static_cast<const uint8_t*>(bytes)[i];
-  return static_cast<int64_t>(utime);
+  (*static_cast<const PacketHandler*>(handler))({static_cast<const uint8_t*>(buffer->data), buffer->data_size});
 }
 
 }  // namespace
@@ -33,29 +26,29 @@ struct Wire::Network {
   lcm_t* lcm = nullptr;
   Channels channels;
   Neighbours neighbours;
-  std::deque<ByteHandler> handlers;  // they stay where they are
+  std::deque<PacketHandler> handlers;  // a deque keeps their addresses
   SentMessages sent_commands;
   Encoder encoder;
   LinkEncoder link_encoder;
 
-  explicit Network(const Config& config)
-      : channels(config.channels),
-        neighbours(config.neighbours),
-        encoder(config.model.arm, config.dialect),
-        link_encoder(config) {}
+  explicit Network(const WireSetup& setup)
+      : channels(setup.channels),
+        neighbours(setup.neighbours),
+        encoder(setup.arm, setup.dialect),
+        link_encoder(setup.arm, setup.neighbours.world_from_base) {}
   ~Network() {
     if (lcm) lcm_destroy(lcm);
   }
 
-  void subscribe(const std::string& channel, ByteHandler handler) {
-    ByteHandler& slot = handlers.emplace_back(std::move(handler));
-    // A channel is a regular expression to LCM; ours is a name.
+  void subscribe(const std::string& channel, PacketHandler handler) {
+    PacketHandler& slot = handlers.emplace_back(std::move(handler));
+    // LCM takes the channel as a regular expression; a channel name is to be taken literally.
     std::string pattern;
     for (char c : channel)
       pattern += std::isalnum(static_cast<unsigned char>(c)) ? std::string(1, c) : fmt::format("[{}]", c);
     lcm_subscription_t* subscription = lcm_subscribe(lcm, pattern.c_str(), call_handler, &slot);
     if (!subscription) throw std::runtime_error(fmt::format("LCM: cannot subscribe to '{}'", channel));
-    lcm_subscription_set_queue_capacity(subscription, kQueue_messages);
+    lcm_subscription_set_queue_capacity(subscription, kQueueMessages);
   }
 
   void send(const std::string& channel, const Packet& packet) {
@@ -63,7 +56,7 @@ struct Wire::Network {
   }
 };
 
-Wire::Wire(const std::string& url, const Config& config) : network_(std::make_unique<Network>(config)) {
+Wire::Wire(const std::string& url, const WireSetup& setup) : network_(std::make_unique<Network>(setup)) {
   network_->lcm = lcm_create(url.empty() ? nullptr : url.c_str());
   if (!network_->lcm)
     throw std::runtime_error(fmt::format("LCM: cannot use the network '{}' (is there a multicast route?)",
@@ -72,23 +65,22 @@ Wire::Wire(const std::string& url, const Config& config) : network_(std::make_un
 
 Wire::~Wire() = default;
 
-void Wire::on_arm_state(ByteHandler handler) {
+void Wire::on_arm_state(PacketHandler handler) {
   network_->subscribe(network_->channels.arm_state, std::move(handler));
 }
-void Wire::on_target(ByteHandler handler) {
+void Wire::on_target(PacketHandler handler) {
   network_->subscribe(network_->channels.target, std::move(handler));
 }
-void Wire::on_obstacles(ByteHandler handler) {
+void Wire::on_obstacles(PacketHandler handler) {
   network_->subscribe(network_->channels.obstacles, std::move(handler));
 }
-void Wire::on_neighbour(size_t k, ByteHandler handler) {
+void Wire::on_neighbour(size_t k, PacketHandler handler) {
   network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }
 
 void Wire::on_foreign_command(bool lockstep, std::function<void()> handler) {
-  const auto listen = [this, lockstep, handler = std::move(handler), last = int64_t{-1}](const void* bytes,
-                                                                                         size_t size) mutable {
-    const int64_t utime = utime_of(bytes, size);
+  const auto listen = [this, lockstep, handler = std::move(handler), last = int64_t{-1}](Packet packet) mutable {
+    const int64_t utime = utime_of(packet);
     if ((lockstep && utime == last) || !network_->sent_commands.has(utime)) handler();
     last = utime;
   };
@@ -113,7 +105,7 @@ void Wire::publish(const ArmState& arm, int64_t utime) {
   if (!channel.empty()) network_->send(channel, network_->link_encoder.encode(arm, utime));
 }
 
-void Wire::publish(const Timing& timing, int64_t utime) {
+void Wire::publish(const LoopTiming& timing, int64_t utime) {
   network_->send(network_->channels.loop_timing, network_->encoder.encode(timing, utime));
 }
 

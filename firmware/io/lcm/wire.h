@@ -4,40 +4,48 @@
 #include <memory>
 #include <string>
 
-#include "firmware/io/config/config.h"
+#include "firmware/io/lcm/channels.h"
 #include "firmware/io/lcm/encoder.h"
 
 namespace sidestep {
 
-/// Bytes of a message, valid during the call.
-using ByteHandler = std::function<void(const void* bytes, size_t size)>;
+/// Called with the bytes of a message, which are valid during the call.
+using PacketHandler = std::function<void(Packet packet)>;
+
+/// What the wire of one controller needs to know. The arm outlives the wire.
+struct WireSetup {
+  const Channels& channels;
+  const Neighbours& neighbours;
+  const Dialect& dialect;
+  const Arm& arm;
+};
 
 /// The LCM network: raw bytes in, commands and reports out.
 class Wire {
  public:
-  /// url empty: LCM's own default. Throws std::runtime_error when the network cannot be used.
-  Wire(const std::string& url, const Config& config);
+  /// url empty: LCM's default. Throws std::runtime_error when the network cannot be used.
+  Wire(const std::string& url, const WireSetup& setup);
   ~Wire();
 
-  /// Handlers run inside receive(), in the order of arrival, and must not throw. Call before the first receive().
-  void on_arm_state(ByteHandler handler);
-  void on_target(ByteHandler handler);
-  void on_obstacles(ByteHandler handler);
+  /// Handlers run inside receive(), in the order of arrival, and must not throw. Call these before the first receive().
+  void on_arm_state(PacketHandler handler);
+  void on_target(PacketHandler handler);
+  void on_obstacles(PacketHandler handler);
   /// Links of the k-th neighbour, k from 0.
-  void on_neighbour(size_t k, ByteHandler handler);
-  /// Commands on our own command channel that this Wire has not sent. In lockstep all controllers of an arm answer with
-  /// the same utime: there the second one with it is foreign.
+  void on_neighbour(size_t k, PacketHandler handler);
+  /// Commands on the own command channel that another process has sent. In lockstep all controllers of an arm answer
+  /// with the same utime: there the second command with the same utime is foreign.
   void on_foreign_command(bool lockstep, std::function<void()> handler);
 
   /// Handles one message, or waits for one for at most timeout_ms. Returns whether one was handled.
   bool receive(int timeout_ms);
 
-  /// Send without allocating; may be called from another thread than receive().
+  /// Each sends without allocating; may be called from another thread than receive().
   void publish(const Command& command, int64_t utime, int64_t seq);
   void publish(const Report& report, const CycleRecord& record);
-  /// Our own links, if anybody is to be told.
+  void publish(const LoopTiming& timing, int64_t utime);
+  /// The links of the measured arm, where neighbours.publish names a channel.
   void publish(const ArmState& arm, int64_t utime);
-  void publish(const Timing& timing, int64_t utime);
 
  private:
   struct Network;

@@ -5,38 +5,39 @@
 #include "firmware/foresight/foresight_thread.h"
 #include "firmware/io/blackbox/blackbox.h"
 #include "firmware/io/lcm/wire.h"
+#include "firmware/io/loop/cycle_clock.h"
 
 namespace sidestep {
 
-/// Runs cycle after cycle: step(), its command and report onto the wire, its times into the books, all of it into the
-/// blackbox. Each of the two loops owns one.
+/// Runs one cycle after the other: calls step(), publishes command, report and timing, records the cycle in the
+/// blackbox and hands it to foresight. Both loops own one.
 class CycleRunner {
  public:
-  /// standing: what limits every cycle (bits of Limiting). All arguments outlive this.
+  /// degraded: Limiting bits that hold for every cycle, such as kLimitingNotRealtime. All arguments outlive this.
   CycleRunner(const Config& config, Wire& wire, Blackbox& blackbox, ForesightThread& foresight_thread, bool lockstep,
-              int standing);
+              int degraded);
 
-  /// When and how a cycle takes place.
+  /// When and why a cycle runs.
   struct CycleTrigger {
     double now_s = 0.0;
     int64_t utime = 0;
-    int skipped_cycles = 0;  ///< since the one before
+    int skipped_cycles = 0;  ///< since the previous one
     double wake_latency_s = 0.0;
     bool stop = false;
     double foreign_command_s = -HUGE_VAL;  ///< as in Inputs
     int64_t rejected_messages = 0;
     const char* rejected_reason = "";
   };
-  void run(const LatestInputs& post, const CycleTrigger& trigger);
+  void run(const LatestInputs& latest, const CycleTrigger& trigger);
 
-  /// Nothing moves by command.
-  bool at_rest() const { return sidestep::at_rest(state_); }
+  /// No command moves the arm.
+  bool at_rest() const { return state_.stream.at_rest(); }
 
-  const Timing& timing() const { return timing_; }
+  const LoopTiming& timing() const { return timing_; }
 
  private:
   void publish_timing(const CycleTrigger& trigger);
-  /// Why the last message was rejected, for a while.
+  /// The reason of the last rejection while it is recent, else "".
   const char* reason_to_show(const CycleTrigger& trigger);
 
   const Model& model_;
@@ -44,9 +45,9 @@ class CycleRunner {
   Blackbox& blackbox_;
   ForesightThread& foresight_thread_;
   bool lockstep_;
-  int standing_;
+  int degraded_;
   State state_;
-  Timing timing_;
+  LoopTiming timing_;
   CycleClock clock_{timing_};
   double timing_published_s_ = 0.0;
   int64_t rejected_messages_ = 0;

@@ -2,34 +2,31 @@
 #include <memory>
 
 #include "firmware/base/realtime.h"
-#include "firmware/io/lcm/admission.h"
-#include "firmware/io/lcm/obstacle_merger.h"
+#include "firmware/io/lcm/network_inputs.h"
 #include "firmware/io/loop/cycle_runner.h"
 #include "firmware/io/loop/loop.h"
 
 namespace sidestep {
 namespace {
 
-// Asked to stop, the loop waits this long for the next arm state before it ends.
-constexpr double kFarewell_s = 0.5;
+constexpr double kWaitForArm_s = 0.5;  // after a stop request, until the loop ends without another arm state
 
 class Lockstep {
  public:
   Lockstep(const Config& config, const std::string& lcm_url, Requests& requests)
       : blackbox_(config, requests.write_blackbox),
         foresight_thread_(config.model, true),
-        wire_(lcm_url, config),
+        wire_(lcm_url, config.wire()),
         runner_(config, wire_, blackbox_, foresight_thread_, true, kLimitingNothing),
-        admission_(config.model.arm.joints, config.model.settings, true),
-        obstacle_merger_(config),
+        inputs_(config.model.settings, config.model.arm.joints, *config.dialect, config.neighbours, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
         stop_(requests.stop) {
-    wire_.on_arm_state([this](const void* bytes, size_t size) { cycle(bytes, size); });
-    wire_.on_target([this](const void* bytes, size_t size) { receive(bytes, size, target_); });
-    wire_.on_obstacles([this](const void* bytes, size_t size) { join(0, bytes, size); });
+    wire_.on_arm_state([this](Packet packet) { cycle(packet); });
+    wire_.on_target([this](Packet packet) { receive(target_, packet); });
+    wire_.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     wire_.on_foreign_command(true, [this] { foreign_command_s_ = now_s_; });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
-      wire_.on_neighbour(k, [this, k](const void* bytes, size_t size) { join(k + 1, bytes, size); });
+      wire_.on_neighbour(k, [this, k](Packet packet) { receive_obstacles(k + 1, packet); });
   }
 
   LoopSummary run() {
@@ -38,67 +35,58 @@ class Lockstep {
       const int64_t cycles = runner_.timing().cycles;
       wire_.receive(50);
       if (runner_.timing().cycles != cycles || !stop_) last_cycle_s = monotonic_s();
-      if (monotonic_s() - last_cycle_s > kFarewell_s) break;
+      if (monotonic_s() - last_cycle_s > kWaitForArm_s) break;
     }
-    return {runner_.timing(), rejected_};
+    return {runner_.timing(), inputs_.rejected()};
   }
 
  private:
-  /// A message between two cycles: it was received when the next one begins. Two slots, so that a rejected message
-  /// does not spoil the one in use.
+  /// The newest message of a channel. Its receipt time is that of the next cycle, less the age that it had on arrival.
+  /// Two slots, so that a rejected message does not overwrite the one in use.
   template <typename Message>
   struct Pending {
     Received<Message> slots[2];
     int current = 0;
     bool arrived = false;
-    double age_s = 0.0;  ///< when it arrived
+    double age_s = 0.0;  ///< on arrival
 
-    Received<Message>& mail() { return slots[current]; }
+    Received<Message>& newest() { return slots[current]; }
+    Received<Message>& draft() { return slots[1 - current]; }
 
+    void take_draft(double at_s) {
+      draft().count = newest().count + 1;
+      age_s = at_s - draft().received_s;
+      current = 1 - current;
+      arrived = true;
+    }
     const Received<Message>& take(double now_s) {
-      if (arrived) mail().received_s = now_s - age_s;
+      if (arrived) newest().received_s = now_s - age_s;
       arrived = false;
-      return mail();
+      return newest();
     }
   };
 
   template <typename Message>
-  bool receive(const void* bytes, size_t size, Pending<Message>& pending) {
-    Received<Message>& spare = pending.slots[1 - pending.current];
-    const bool admitted = admission_.admit(bytes, size, now_s_, spare.message);
-    count_rejected(admission_);
-    if (!admitted) return false;
-    const auto* first = static_cast<const uint8_t*>(bytes);
-    spare.bytes.assign(first, first + size);
-    spare.count = pending.mail().count + 1;
-    pending.current = 1 - pending.current;
-    return pending.arrived = true;
+  bool receive(Pending<Message>& pending, Packet packet) {
+    if (!inputs_.receive(packet, now_s_, pending.draft())) return false;
+    pending.take_draft(now_s_);
+    return true;
   }
 
-  void join(size_t part, const void* bytes, size_t size) {
-    const auto whole = obstacle_merger_.join(part, bytes, size, now_s_);
-    if (!whole) return count_rejected(obstacle_merger_);
-    if (receive(whole->packet.bytes, whole->packet.size, *obstacles_)) obstacles_->age_s = whole->age_s;
+  void receive_obstacles(size_t part, Packet packet) {
+    if (inputs_.receive_obstacles(part, packet, now_s_, obstacles_->draft())) obstacles_->take_draft(now_s_);
   }
 
-  /// After a message that went no farther than this gate.
-  template <typename Gate>
-  void count_rejected(const Gate& gate) {
-    const int64_t count = admission_.rejected() + obstacle_merger_.rejected();
-    if (count > rejected_) rejected_reason_ = gate.last_reason();
-    rejected_ = count;
-  }
-
-  void cycle(const void* bytes, size_t size) {
-    if (!receive(bytes, size, arm_)) return;
+  void cycle(Packet packet) {
+    if (!receive(arm_, packet)) return;
     CycleRunner::CycleTrigger trigger;
-    trigger.utime = arm_.mail().message.utime;
+    trigger.utime = arm_.newest().message.utime;
     trigger.now_s = now_s_ = static_cast<double>(trigger.utime) * 1e-6;
     trigger.stop = stop_;
-    if (foreign_command_s_ > now_s_) foreign_command_s_ = -HUGE_VAL;  // the clock has started over
+    if (foreign_command_s_ > now_s_) foreign_command_s_ = -HUGE_VAL;  // the arm's clock has started over
     trigger.foreign_command_s = foreign_command_s_;
-    trigger.rejected_messages = rejected_;
-    trigger.rejected_reason = rejected_reason_;
+    trigger.rejected_messages = inputs_.rejected();
+    trigger.rejected_reason = inputs_.last_reason();
     runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, trigger);
   }
 
@@ -106,15 +94,12 @@ class Lockstep {
   ForesightThread foresight_thread_;
   Wire wire_;
   CycleRunner runner_;
-  Admission admission_;
-  ObstacleMerger obstacle_merger_;
+  NetworkInputs inputs_;
   Pending<ArmState> arm_;
   Pending<Target> target_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
-  double now_s_ = 0.0;
+  double now_s_ = 0.0;  ///< of the last cycle
   double foreign_command_s_ = -HUGE_VAL;
-  int64_t rejected_ = 0;
-  const char* rejected_reason_ = "";
   const std::atomic<bool>& stop_;
 };
 

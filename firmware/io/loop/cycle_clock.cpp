@@ -1,4 +1,4 @@
-#include "firmware/io/loop/timing.h"
+#include "firmware/io/loop/cycle_clock.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ std::string row(const char* name, const Histogram& histogram) {
 
 }  // namespace
 
-std::string table(const Timing& timing) {
+std::string table(const LoopTiming& timing) {
   std::string text = fmt::format("{:18}{:>10}{:>10}{:>10}{:>10}", "us", "p50", "p99", "p99.9", "worst");
   text += row("wake-up latency", timing.wake_latency) + row("CPU time, cycle", timing.cycle);
   for (size_t stage = 0; stage < kStages; ++stage) text += row(kStageNames[stage], timing.stages[stage]);

@@ -1,0 +1,50 @@
+#include "firmware/control/input_gate.h"
+
+#include "firmware/control/validation.h"
+
+namespace sidestep {
+namespace {
+
+constexpr Verdict kAccepted{true, nullptr};
+
+Verdict rejected(const char* reason) {
+  return {false, reason};
+}
+
+}  // namespace
+
+InputGate::InputGate(int joints, const Settings& settings, InputSource source)
+    : joints_(joints),
+      timeouts_(settings.timeouts),
+      source_(source),
+      memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s) {}
+
+Verdict InputGate::accept(ArmState& arm, double now_s) {
+  if (!plausible(arm, joints_)) return rejected("arm state with impossible values");
+  if (!is_ordered()) return kAccepted;
+  const double received_s = source_ == InputSource::kLockstep ? static_cast<double>(arm.utime) * 1e-6 : now_s;
+  return {arm_order_.accept(arm.utime, received_s, timeouts_.arm_state_lost_s), nullptr};
+}
+
+Verdict InputGate::accept(Target& target, double now_s) {
+  if (!sanitize(target)) return rejected("target with impossible values");
+  if (!is_ordered()) return kAccepted;
+  return {target_order_.accept(target.utime, now_s, timeouts_.target_s), nullptr};
+}
+
+Verdict InputGate::accept(ObstacleSet& obstacles, int64_t utime, double now_s) {
+  if (!sanitize(obstacles)) return rejected("obstacles with impossible values");
+  if (source_ == InputSource::kRecording) return kAccepted;
+  if (source_ == InputSource::kCalls) {
+    memory_.add_remembered(obstacles, now_s - memory_.last_set_s(now_s), now_s);
+    return kAccepted;
+  }
+  if (obstacles_order_.accept(utime, now_s, timeouts_.obstacles_s)) {
+    memory_.add_remembered(obstacles, obstacles_order_.elapsed_s(), now_s);
+    return kAccepted;
+  }
+  if (obstacles_order_.is_late(utime)) memory_.add_late_set(obstacles, timeouts_.obstacles_s, now_s);
+  return {};
+}
+
+}  // namespace sidestep

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "firmware/control/message_order.h"
+#include "firmware/control/obstacle_memory.h"
+#include "firmware/control/types/inputs.h"
+#include "firmware/control/types/settings.h"
+
+namespace sidestep {
+
+/// Where values come from, which decides what the gate does after the plausibility check.
+enum class InputSource {
+  kNetwork,    ///< messages: ordered by their sender's utime, obstacles remembered
+  kLockstep,   ///< the same, with the arm's utime as the clock of its receipt
+  kCalls,      ///< function calls of the same process: in the order of the calls, obstacles remembered
+  kRecording,  ///< values that a gate has accepted before, with what it remembered: plausibility only
+};
+
+/// What the gate decided about a value.
+struct Verdict {
+  bool accepted = false;
+  const char* rejected = nullptr;  ///< static text: why the value is invalid; null for a late or repeated one
+
+  explicit operator bool() const { return accepted; }
+};
+
+/// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
+/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). Does not throw and
+/// does not allocate. Large: lives on the heap.
+class InputGate {
+ public:
+  InputGate(int joints, const Settings& settings, InputSource source);
+
+  /// Each may change the value: fields that do not apply become neutral, remembered obstacles are added. A value that
+  /// was not accepted is not to be used. now_s: local time of receipt.
+  Verdict accept(ArmState& arm, double now_s);
+  Verdict accept(Target& target, double now_s);
+  Verdict accept(ObstacleSet& obstacles, int64_t utime, double now_s);
+
+ private:
+  bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
+
+  int joints_;
+  Timeouts timeouts_;
+  InputSource source_;
+  MessageOrder arm_order_, target_order_, obstacles_order_;
+  ObstacleMemory memory_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "firmware/control/types/settings.h"
+#include "firmware/model/arm.h"
+#include "firmware/model/obstacle.h"
+
+namespace sidestep {
+
+/// Everything the controller knows that does not change while it runs.
+struct Model {
+  Arm arm;
+  Settings settings;
+  std::vector<std::pair<int, int>> self_pairs;  ///< pairs of Arm::shapes that must keep clear of each other
+  std::vector<Obstacle> surroundings;           ///< static obstacles of the configuration, base frame
+};
+
+}  // namespace sidestep

@@ -1,0 +1,13 @@
+#include "firmware/control/types/settings.h"
+
+namespace sidestep {
+
+void use_law(Settings& settings, Law law) {
+  settings.law = law;
+  if (law != Law::kPaper) return;
+  settings.shield.enabled = false;
+  settings.foresight.enabled = false;
+  settings.timeouts.coast_s = 0.0;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "firmware/control/types/messages.h"
+
+namespace sidestep {
+
+/// Checks of values from outside. A value is plausible when every number is finite and within what an arm or a room can
+/// have (lengths up to 1000 m, speeds up to 1000 m/s or rad/s), sizes are not negative, and quaternions that are used
+/// have length 1 within 1e-3.
+bool plausible(const ArmState& state, int joints);
+bool plausible(const Target& target);
+bool plausible(const Obstacle& obstacle);
+
+/// Each returns false for an implausible value; else resets the fields that do not apply to neutral values: the
+/// orientation of a position target, the angular velocity of a sphere.
+bool sanitize(Target& target);
+bool sanitize(ObstacleSet& set);
+
+/// An obstacle at rest of a shape as reported from outside; size_m as in obstacle_t. The result is not plausible()
+/// where shape, size or orientation are invalid.
+Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& orientation, const Vector3& size_m);
+
+}  // namespace sidestep

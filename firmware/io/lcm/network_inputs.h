@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "firmware/control/types/settings.h"
+#include "firmware/io/lcm/channels.h"
+#include "firmware/io/lcm/dialect.h"
+#include "firmware/io/lcm/received.h"
+
+namespace sidestep {
+
+/// The inbound side of a loop: decodes each message (message_decoder.h), merges the obstacles of several senders
+/// (obstacle_merger.h), passes the value through the input gate (input_gate.h) and counts rejected messages. For one
+/// thread. Does not throw; does not allocate after the largest message of each kind. Large: lives on the heap.
+class NetworkInputs {
+ public:
+  NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
+                bool lockstep);
+  ~NetworkInputs();
+
+  /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt time;
+  /// otherwise its content is arbitrary. The count is left to the caller. now_s: local time of receipt.
+  bool receive(Packet packet, double now_s, Received<ArmState>& received);
+  bool receive(Packet packet, double now_s, Received<Target>& received);
+  /// part 0: the own channel; part k: the k-th neighbour, from 1.
+  bool receive_obstacles(size_t part, Packet packet, double now_s, Received<ObstacleSet>& received);
+
+  int64_t rejected() const { return rejected_; }
+  const char* last_reason() const { return reason_; }  ///< of the last rejection; "" before the first
+
+ private:
+  struct Parts;
+  bool reject(const char* reason);
+  template <typename Message>
+  bool receive_value(Packet packet, double now_s, Received<Message>& received);
+
+  std::unique_ptr<Parts> parts_;
+  int64_t rejected_ = 0;
+  const char* reason_ = "";
+};
+
+}  // namespace sidestep
