@@ -2,7 +2,8 @@
 """Run cmocka test binaries, each in its own network namespace and with a time limit.
 
 Prints one line per binary, and the whole output of a binary that fails. A binary fails if it crashes, exceeds the time
-limit, runs no test or leaves a process running. The last line is `N passed, N failed`; the exit code is 1 if any failed.
+limit, runs no test or leaves a process running. The last line is `N passed, N failed`; the exit code is 1 if any
+failed.
 """
 import argparse
 import os
@@ -147,8 +148,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
     parser.add_argument("--jobs", type=int, default=1, help="number of parallel binaries (default %(default)s)")
-    parser.add_argument("--time-limit", type=float, default=120, metavar="S", help="of each binary (default %(default)s)")
-    parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND", help="command that runs the binaries, such as qemu")
+    parser.add_argument("--time-limit", type=float, default=120, metavar="S",
+                        help="of each binary (default %(default)s)")
+    parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND",
+                        help="command that runs the binaries, such as qemu")
     arguments = parser.parse_args()
     if missing := [binary for binary in arguments.binaries if not os.access(binary, os.X_OK)]:
         parser.error(f"not a program: {missing[0]}")

@@ -1,7 +1,6 @@
 """Forward kinematics and collision shapes of a chain of a URDF, for drawing."""
 import sys
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +8,7 @@ import numpy as np
 import runs
 import wire
 
-ROOT = Path(__file__).resolve().parents[2]
-CONFIG = ROOT / "firmware/config/lwa3.yaml"
+CONFIG = runs.ROOT / "firmware/config/lwa3.yaml"
 ROBOT = ("urdf", "base", "tip")
 
 
@@ -154,7 +152,7 @@ def robot_of(config, arguments):
     for name in ROBOT:
         if not (getattr(arguments, name) or robot.get(name)):
             sys.exit(f"{config}: robot has no {name}, and there is no --{name}")
-    return arguments.urdf or ROOT / robot["urdf"], arguments.base or robot["base"], arguments.tip or robot["tip"]
+    return arguments.urdf or runs.ROOT / robot["urdf"], arguments.base or robot["base"], arguments.tip or robot["tip"]
 
 
 def channels_of(config):

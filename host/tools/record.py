@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Record the messages of Sidestep's channels in an LCM log, for lcm-logplayer, until Ctrl-C."""
 import argparse
-import select
 import signal
 import sys
 import time
@@ -27,8 +26,7 @@ def record(file, channels, lcm_url):
     log = lcm.EventLog(file, "w", overwrite=True)  # opened last, because it replaces an existing log
     try:
         while True:
-            select.select([network], [], [])  # Ctrl-C interrupts select(), but not handle()
-            network.handle_timeout(10)  # ms; handle() would block on an incomplete message
+            wire.handle_messages(network)
     except KeyboardInterrupt:
         log.close()
     return written

@@ -124,7 +124,7 @@ def page(data):
 
 def config_for(log):
     """The configuration of the scenario after which the log is named, else that of the LWA3."""
-    scenario_file = arm.ROOT / "host/scenarios" / f"{log.stem.removesuffix('-realtime')}.yaml"
+    scenario_file = runs.ROOT / "host/scenarios" / f"{log.stem.removesuffix('-realtime')}.yaml"
     if not scenario_file.is_file():
         return arm.CONFIG
     return runs.config_of(runs.arms_of(runs.load_scenario(scenario_file))[0])
@@ -133,9 +133,11 @@ def config_for(log):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
-    parser.add_argument("-o", "--output", type=Path, default=Path("report.html"), help="page to write (default: %(default)s)")
-    parser.add_argument("--config", type=Path, help="configuration of the controller (default: that of the scenario after "
-                                                    "which LOG is named, else that of the LWA3)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("report.html"),
+                        help="page to write (default: %(default)s)")
+    parser.add_argument("--config", type=Path,
+                        help="configuration of the controller (default: that of the scenario after which LOG is named, "
+                             "else that of the LWA3)")
     arm.add_robot(parser)
     arguments = parser.parse_args()
     try:

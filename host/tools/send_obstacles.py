@@ -6,7 +6,6 @@ contains the full set. The controller keeps an obstacle that is missing in it fo
 Without obstacles the empty set is sent.
 """
 import argparse
-import time
 
 import crowds
 import wire
@@ -16,13 +15,13 @@ MOST = 4096  # the controller rejects a message with more obstacles
 
 def send(crowd, lcm_url):
     """crowd: function from seconds since the start to a list of obstacles."""
-    network, message, start = wire.connect(lcm_url), wire.obstacles_t(), time.time()
-    while True:
-        message.utime = int(time.time() * 1e6)
-        message.obstacles = crowd(time.time() - start)
+    message = wire.obstacles_t()
+
+    def message_at(t_s):
+        message.obstacles = crowd(t_s)
         message.num_obstacles = len(message.obstacles)
-        network.publish("OBSTACLES", message.encode())
-        time.sleep(0.02)
+        return message
+    wire.publish("OBSTACLES", message_at, lcm_url)
 
 
 def numbers(text):
@@ -73,10 +72,7 @@ def main():
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:
         parser.error(str(error))
-    try:
-        send(crowd, arguments.lcm_url)
-    except KeyboardInterrupt:
-        pass
+    send(crowd, arguments.lcm_url)
 
 
 if __name__ == "__main__":

@@ -8,9 +8,8 @@ import argparse
 import curses
 import math
 import sys
-import time
 
-from wire import add_lcm_url, command_line, connect, finite, target_t
+from wire import add_lcm_url, command_line, finite, publish, target_t
 
 STEP_M = 0.02  # for each key press
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
@@ -19,12 +18,12 @@ KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1,
 
 def send(motion, lcm_url):
     """motion: function from seconds since the start to (position, velocity)."""
-    network, target, start = connect(lcm_url), target_t(), time.time()
-    while True:
-        target.utime = int(time.time() * 1e6)
-        target.position, target.velocity = motion(time.time() - start)
-        network.publish("TARGET", target.encode())
-        time.sleep(0.02)
+    target = target_t()
+
+    def message_at(t_s):
+        target.position, target.velocity = motion(t_s)
+        return target
+    publish("TARGET", message_at, lcm_url)
 
 
 def line(start_m, velocity_mps):
@@ -92,17 +91,14 @@ def parsed():
 def main():
     arguments = parsed()
     position_m, velocity_mps, url = arguments.numbers[:3], arguments.numbers[3:] or [0.0] * 3, arguments.lcm_url
-    try:
-        if arguments.keys:
-            curses.wrapper(lambda screen: send(keys(screen, position_m), url))
-        elif arguments.circle:
-            send(circle(position_m, arguments.circle, arguments.period), url)
-        elif arguments.figure_eight:
-            send(figure_eight(position_m, arguments.figure_eight, arguments.period), url)
-        else:
-            send(line(position_m, velocity_mps), url)
-    except KeyboardInterrupt:
-        pass
+    if arguments.keys:
+        curses.wrapper(lambda screen: send(keys(screen, position_m), url))
+    elif arguments.circle:
+        send(circle(position_m, arguments.circle, arguments.period), url)
+    elif arguments.figure_eight:
+        send(figure_eight(position_m, arguments.figure_eight, arguments.period), url)
+    else:
+        send(line(position_m, velocity_mps), url)
 
 
 if __name__ == "__main__":

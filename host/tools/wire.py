@@ -34,6 +34,25 @@ def connect(lcm_url):
         sys.exit(f"cannot use the LCM network '{lcm_url or 'default'}' (is there a multicast route?)")
 
 
+def handle_messages(network, limit_s=None):
+    """Waits for a message, up to limit_s or without limit, and handles it."""
+    if select.select([network], [], [], limit_s)[0]:  # Ctrl-C interrupts select(), but not handle()
+        network.handle_timeout(10)  # ms; handle() would block on an incomplete message
+
+
+def publish(channel, message_at, lcm_url):
+    """Publishes message_at(seconds since the start) on a channel, 50 times a second, until Ctrl-C."""
+    network, start = connect(lcm_url), time.time()
+    try:
+        while True:
+            message = message_at(time.time() - start)
+            message.utime = int(time.time() * 1e6)
+            network.publish(channel, message.encode())
+            time.sleep(0.02)
+    except KeyboardInterrupt:
+        pass
+
+
 def finite(text):
     """The finite number that the text gives; ValueError otherwise."""
     if not math.isfinite(value := float(text)):
@@ -66,8 +85,7 @@ class LatestMessages(dict):
     def receive(self, duration_s):
         end = time.monotonic() + duration_s
         while (left_s := end - time.monotonic()) > 0:
-            if select.select([self.network], [], [], left_s)[0]:  # Ctrl-C interrupts select(), but not handle()
-                self.network.handle_timeout(10)  # ms; handle() would block on an incomplete message
+            handle_messages(self.network, left_s)
 
 
 def add_lcm_url(parser):

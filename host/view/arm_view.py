@@ -1,11 +1,10 @@
 """One arm of the view: its configuration and its messages, transformed to the world frame that the arms share."""
 import copy
-from pathlib import Path
 
 import numpy as np
-import yaml
 
 import arm
+import runs
 import scene
 from wire import obstacle_t
 
@@ -27,7 +26,7 @@ class ArmView:
     """robot: (URDF, base, tip). name: prefix of all names in the viewer. latest: wire.LatestMessages of channels()."""
 
     def __init__(self, config, robot, name=""):
-        settings = yaml.safe_load(Path(config).read_text())
+        settings = runs.load(config)
         neighbours = settings.get("neighbours") or {}
         self.name = name
         self.chain, self.shapes = arm.chain(*robot), arm.shapes(*robot)

@@ -8,7 +8,6 @@ import argparse
 import subprocess
 import sys
 from collections import Counter
-from pathlib import Path
 
 import lcm
 import numpy as np
@@ -17,6 +16,7 @@ from drake import lcmt_iiwa_command, lcmt_iiwa_status
 from iiwa_world import HOME_RAD, OBSTACLES, TARGET, Iiwa, ROOT
 
 sys.path.insert(0, str(ROOT / "host/tools"))
+import crowds
 import runs
 import wire
 
@@ -64,12 +64,9 @@ def publish(network, utime, time_s):
     network.publish("TARGET", target.encode())
     obstacles = wire.obstacles_t()
     obstacles.utime, obstacles.num_obstacles = utime, len(OBSTACLES)
-    for number, (radius_m, swing) in enumerate(OBSTACLES):
-        obstacle = wire.obstacle_t()
-        obstacle.id, obstacle.shape, obstacle.quaternion = number, wire.obstacle_t.SPHERE, [1, 0, 0, 0]
-        obstacle.size = [radius_m, 0, 0]
-        obstacle.position, obstacle.velocity = swing.at(time_s)
-        obstacles.obstacles.append(obstacle)
+    for number, (radius_m, centre) in enumerate(OBSTACLES):
+        position, velocity = centre.at(time_s)
+        obstacles.obstacles.append(crowds.sphere(number, *position, radius_m, *velocity))
     network.publish("OBSTACLES", obstacles.encode())
 
 
@@ -86,7 +83,7 @@ def play(iiwa, recorder, duration_s):
         time_s = 0.0 if start_s is None else now_s - start_s
         if start_s is not None:
             errors_m.append(np.linalg.norm(iiwa.flange_m() - TARGET.at(time_s)[0]))
-            clearances_m.append(min(iiwa.clearance_m(swing.at(time_s)[0], radius) for radius, swing in OBSTACLES))
+            clearances_m.append(min(iiwa.clearance_m(centre.at(time_s)[0], radius) for radius, centre in OBSTACLES))
         publish(recorder.network, round(now_s * 1e6), time_s)
         iiwa.advance(PERIOD_S)
         recorder.receive()
@@ -115,7 +112,8 @@ def checks(iiwa, recorder, errors_m, clearances_m, acceleration_radps2):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=float, default=60, metavar="S", help="duration of tracking (default %(default)s)")
+    parser.add_argument("--duration", type=float, default=60, metavar="S",
+                        help="duration of tracking (default %(default)s)")
     duration_s = parser.parse_args().duration
     url = runs.private_url()
     iiwa = Iiwa(url)

@@ -36,9 +36,9 @@ def poses_of_pinocchio(model, base, tip, postures, joints):
     for posture in postures:
         q = pin.neutral(model)
         for joint, angle in zip(joints, posture):
-            at = model.joints[joint].idx_q
+            at, size = model.joints[joint].idx_q, model.joints[joint].nq
             # Pinocchio represents a continuous joint by cosine and sine.
-            q[at:at + model.joints[joint].nq] = [angle] if model.joints[joint].nq == 1 else [np.cos(angle), np.sin(angle)]
+            q[at:at + size] = [angle] if size == 1 else [np.cos(angle), np.sin(angle)]
         pin.framesForwardKinematics(model, data, q)
         pose = data.oMf[model.getFrameId(base)].inverse() * data.oMf[model.getFrameId(tip)]
         rows.append([*pose.translation, *pose.rotation.ravel()])
@@ -58,7 +58,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000, help="postures for each arm (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tolerance", type=float, default=1e-9, help="for positions, m, and for rotation matrices (default %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-9,
+                        help="for positions, m, and for rotation matrices (default %(default)s)")
     arguments = parser.parse_args()
     random, failed = np.random.default_rng(arguments.seed), 0
     for urdf, base, tip in ARMS:

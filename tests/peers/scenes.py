@@ -34,7 +34,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="scenes for each arm (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--family", default="chase", help="family of scenes (default %(default)s: with a moving target)")
+    parser.add_argument("--family", default="chase",
+                        help="family of scenes (default %(default)s: with a moving target)")
     arguments = parser.parse_args()
     failed = 0
     for arm in ARMS:
