@@ -30,7 +30,7 @@ int run(int argc, char** argv) {
   std::string file, config_file;
   app.add_option("LOG", file, "blackbox log of a controller")->required();
   app.add_option("--config", config_file, "configuration of the controller (default: the file named in the log)");
-  app.footer("Exit code: 0 all commands agree, 1 some differ, 2 bad arguments or files.");
+  app.footer("Exit code: 0 all commands agree, 1 some differ, 2 wrong arguments or files.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

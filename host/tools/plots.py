@@ -135,7 +135,7 @@ def plot_top(axes, run):
 
 
 def mark_foresight(axes, run):
-    """Light grey while foresight guides the arm, darker grey while foresight knows no path (controller_status_t)."""
+    """Light grey: foresight guides the arm. Darker grey: foresight has no path yet (WAITING)."""
     t, foresight = run.columns["t_s"], run.columns["foresight"]
     for value, label, alpha in ((1, "foresight: guided", 0.12), (2, "foresight: no path known", 0.3)):
         if (foresight == value).any():
