@@ -108,8 +108,9 @@ def soak(duration_s, rng):
         try:
             controller = runs.start([runs.BUILD / "controller", "--config", controller_config(), "--lcm-url", url],
                                     controller_log)
+            processes.append(controller)
             cyclictest = latency.start_cyclictest(1000, duration_s + 120, os.cpu_count(), cyclictest_log)
-            processes = [controller] + ([cyclictest] if cyclictest else [])
+            processes += [cyclictest] if cyclictest else []
             until_s = time.monotonic() + duration_s
             while time.monotonic() < until_s:
                 clearances.append(run_simulator(rng, controller, url, sim_log, until_s, memory))
