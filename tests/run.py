@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Run cmocka test binaries, each in its own network namespace and with a time limit.
 
-One line per binary, the whole output of those that fail. A binary that crashes, takes too long, runs no test or leaves
-a process behind has failed. The last line is `N passed, N failed`; the exit code is 1 when anything failed.
+Prints one line per binary, and the whole output of a binary that fails. A binary fails if it crashes, exceeds the time
+limit, runs no test or leaves a process running. The last line is `N passed, N failed`; the exit code is 1 if any
+failed.
 """
 import argparse
 import os
@@ -18,7 +19,7 @@ from typing import NamedTuple
 
 MARK = "SIDESTEP_TEST"  # in the environment of every process that a test starts
 MULTICAST = 'ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec "$@"'
-LEAVE_S = 1.0  # for the processes of a finished test to be gone
+LEAVE_S = 1.0  # time for the processes of a finished test to end
 
 
 class Outcome(NamedTuple):
@@ -27,12 +28,12 @@ class Outcome(NamedTuple):
     failed: int
     skipped: int
     seconds: float
-    why: str  # what is wrong beyond the tests that failed
+    reason: str  # of a failure other than failed tests
     output: str
 
 
 def isolation():
-    """The command that puts a test into its own network namespace, or nothing where that is not permitted."""
+    """The command prefix that runs a test in its own network namespace; empty if not permitted."""
     for unshare in (["unshare", "-n"], ["unshare", "-rn"]):
         command = [*unshare, "sh", "-c", MULTICAST, "sh"]
         try:
@@ -40,12 +41,12 @@ def isolation():
                 return command
         except (OSError, subprocess.TimeoutExpired):
             pass
-    print("network namespaces are not permitted here: the tests share this machine's network")
+    print("network namespaces are not permitted: the tests share the network of this machine")
     return []
 
 
 def count(output):
-    """(passed, failed, skipped) from cmocka's messages; tests that were announced but not reported have failed."""
+    """(passed, failed, skipped) from cmocka's messages; announced tests without a result have failed."""
     announced = sum(map(int, re.findall(r"\[==========\] Running (\d+) test\(s\)", output)))
     passed = len(re.findall(r"\[       OK \] ", output))
     skipped = sum(map(int, re.findall(r"\[  SKIPPED \] (\d+) test\(s\)", output)))
@@ -53,13 +54,13 @@ def count(output):
 
 
 def marked(mark):
-    """Ids of the living processes that carry the mark."""
+    """Ids of the running processes with this mark in their environment."""
     wanted, found = f"{MARK}={mark}".encode(), []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             if wanted in (entry / "environ").read_bytes().split(b"\0"):
                 found.append(int(entry.name))
-        except OSError:  # gone, or not ours
+        except OSError:  # ended, or owned by another user
             pass
     return found
 
@@ -68,7 +69,7 @@ def name_of(process):
     try:
         return Path(f"/proc/{process}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
     except OSError:
-        return "gone"
+        return "ended"
 
 
 def kill(processes):
@@ -80,7 +81,7 @@ def kill(processes):
 
 
 def left_behind(mark):
-    """Names of the processes that outlive their test; they are killed."""
+    """Kills the processes that outlive their test and returns their names."""
     deadline = time.monotonic() + LEAVE_S
     while marked(mark) and time.monotonic() < deadline:
         time.sleep(0.02)
@@ -91,7 +92,7 @@ def left_behind(mark):
 
 
 def run(binary, prefix, limit_s):
-    mark, start, why = f"{os.getpid()}:{binary}", time.monotonic(), []
+    mark, start, reasons = f"{os.getpid()}:{binary}", time.monotonic(), []
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen([*prefix, str(binary.absolute())], stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                    start_new_session=True,
@@ -99,28 +100,28 @@ def run(binary, prefix, limit_s):
         try:
             code = process.wait(limit_s)
         except subprocess.TimeoutExpired:
-            why.append(f"took longer than {limit_s:g} s")
+            reasons.append(f"took longer than {limit_s:g} s")
             os.killpg(process.pid, signal.SIGKILL)
             kill(marked(mark))
             code = process.wait()
         seconds = time.monotonic() - start
-        if not why and (left := left_behind(mark)):
-            why.append("left behind: " + ", ".join(left))
+        if not reasons and (left := left_behind(mark)):
+            reasons.append("left running: " + ", ".join(left))
         log.seek(0)
         output = log.read().decode(errors="replace")
     passed, failed, skipped = count(output)
-    if not why and code < 0:
-        why.append(f"ended by {signal.Signals(-code).name}")
-    elif not why and code and not failed:
-        why.append(f"exit code {code}")
+    if not reasons and code < 0:
+        reasons.append(f"ended by {signal.Signals(-code).name}")
+    elif not reasons and code and not failed:
+        reasons.append(f"exit code {code}")
     if not passed + failed + skipped:
-        why.append("ran no test")
-    return Outcome(binary, passed, max(failed, len(why)), skipped, seconds, "; ".join(why), output)
+        reasons.append("ran no test")
+    return Outcome(binary, passed, max(failed, len(reasons)), skipped, seconds, "; ".join(reasons), output)
 
 
 def show(outcome):
     name = "/".join(outcome.binary.parts[-2:])
-    notes = [f"{outcome.skipped} skipped"] * bool(outcome.skipped) + [outcome.why] * bool(outcome.why)
+    notes = [f"{outcome.skipped} skipped"] * bool(outcome.skipped) + [outcome.reason] * bool(outcome.reason)
     print(f"{'FAIL' if outcome.failed else 'ok':4}  {name:40} {outcome.passed:4} passed {outcome.failed:4} failed "
           f"{outcome.seconds:8.2f} s" + "".join(f"  {note}" for note in notes))
     if outcome.failed:
@@ -146,9 +147,11 @@ def run_all(binaries, jobs, limit_s, under):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
-    parser.add_argument("--jobs", type=int, default=1, help="binaries at a time (default %(default)s)")
-    parser.add_argument("--time-limit", type=float, default=120, metavar="S", help="for each (default %(default)s)")
-    parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND", help="that runs them, such as qemu")
+    parser.add_argument("--jobs", type=int, default=1, help="number of parallel binaries (default %(default)s)")
+    parser.add_argument("--time-limit", type=float, default=120, metavar="S",
+                        help="of each binary (default %(default)s)")
+    parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND",
+                        help="command that runs the binaries, such as qemu")
     arguments = parser.parse_args()
     if missing := [binary for binary in arguments.binaries if not os.access(binary, os.X_OK)]:
         parser.error(f"not a program: {missing[0]}")

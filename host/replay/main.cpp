@@ -25,12 +25,12 @@ int replay(const std::string& file, const std::string& config_file) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Runs the control cycles of a blackbox log again and compares the commands bit for bit. Needs the build and the "
-      "configuration that wrote the log.");
+      "Repeats the control cycles of a blackbox log and compares the commands bit for bit. Needs the build and the "
+      "configuration of the controller that wrote the log.");
   std::string file, config_file;
-  app.add_option("LOG", file, "a log that the controller has written")->required();
+  app.add_option("LOG", file, "blackbox log of a controller")->required();
   app.add_option("--config", config_file, "configuration of the controller (default: the file named in the log)");
-  app.footer("Exit code: 0 all commands agree, 1 some differ, 2 bad arguments or files.");
+  app.footer("Exit code: 0 all commands agree, 1 some differ, 2 wrong arguments or files.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,22 +1,20 @@
-"""Where an arm's joints and link shapes are: the chain of a URDF, for drawing."""
+"""Forward kinematics and collision shapes of a chain of a URDF, for drawing."""
 import sys
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-import bus
 import runs
+import wire
 
-ROOT = Path(__file__).resolve().parents[2]
-CONFIG = ROOT / "firmware/config/lwa3.yaml"
+CONFIG = runs.ROOT / "firmware/config/lwa3.yaml"
 ROBOT = ("urdf", "base", "tip")
 
 
-def vector(joint, tag, attribute, default=(0, 0, 0)):
-    element = joint.find(tag)
-    text = element.get(attribute) if element is not None else None
+def vector(element, tag, attribute, default=(0, 0, 0)):
+    child = element.find(tag)
+    text = child.get(attribute) if child is not None else None
     return np.array([float(number) for number in text.split()] if text else default, float)
 
 
@@ -26,23 +24,26 @@ def rotation_about(axis, angle_rad):
     return np.eye(3) + np.sin(angle_rad) * skew + (1 - np.cos(angle_rad)) * skew @ skew
 
 
-def rotation_of(roll, pitch, yaw):
+def rotation_of_rpy(roll, pitch, yaw):
     x, y, z = np.eye(3)
     return rotation_about(z, yaw) @ rotation_about(y, pitch) @ rotation_about(x, roll)
 
 
 class Shape(NamedTuple):
-    """A collision shape at a place in the frame of a link."""
+    """A collision shape with its pose in the frame of its link."""
     link: str
-    frame: int          # of the link in frames()
-    kind: str           # sphere, cylinder, capsule or box
-    size: tuple         # m: (radius), (radius, length along z) or the edges
-    place: np.ndarray   # 3
-    turn: np.ndarray    # 3x3
+    frame: int            # index of the link in link_poses()
+    kind: str             # sphere, cylinder, capsule or box
+    size: tuple           # m: (radius), (radius, length along z) or the edges
+    position: np.ndarray  # 3, m
+    rotation: np.ndarray  # 3x3
 
 
-def path(urdf, base, tip):
-    """The joint elements from base to tip, and the link elements by name; or one line and exit code 1."""
+def parse(urdf, base, tip):
+    """The joint elements from base to tip, and the link elements by name.
+
+    A wrong URDF ends the script with one line and exit code 1.
+    """
     try:
         robot = ElementTree.parse(urdf).getroot()
     except (OSError, ElementTree.ParseError) as error:
@@ -59,25 +60,25 @@ def path(urdf, base, tip):
 
 def chain(urdf, base, tip):
     """(offset 3, rotation 3x3, axis or None if fixed) of every joint from base to tip."""
-    return [(vector(joint, "origin", "xyz"), rotation_of(*vector(joint, "origin", "rpy")),
+    return [(vector(joint, "origin", "xyz"), rotation_of_rpy(*vector(joint, "origin", "rpy")),
              vector(joint, "axis", "xyz", (1, 0, 0)) if joint.get("type") in ("revolute", "continuous") else None)
-            for joint in path(urdf, base, tip)[0]]
+            for joint in parse(urdf, base, tip)[0]]
 
 
-def frames(links, q_rad):
-    """(place 3, turn 3x3) in the base frame: of the base, then of every joint's child, and so of the tip."""
-    place, turn, angles = np.zeros(3), np.eye(3), iter(q_rad)
-    placed = [(place, turn)]
-    for offset, rotation, axis in links:
-        place = place + turn @ offset
-        turn = turn @ rotation @ (np.eye(3) if axis is None else rotation_about(axis, next(angles)))
-        placed.append((place, turn))
-    return placed
+def link_poses(links, q_rad):
+    """(position 3, rotation 3x3) in the base frame of the base and of every joint's child link; the tip is the last."""
+    position, rotation, angles = np.zeros(3), np.eye(3), iter(q_rad)
+    poses = [(position, rotation)]
+    for offset, joint_rotation, axis in links:
+        position = position + rotation @ offset
+        rotation = rotation @ joint_rotation @ (np.eye(3) if axis is None else rotation_about(axis, next(angles)))
+        poses.append((position, rotation))
+    return poses
 
 
 def joint_points(links, q_rad):
-    """N x 3: the base, every joint's origin, and so the tip, m, in the base frame."""
-    return np.array([place for place, _ in frames(links, q_rad)])
+    """N x 3, m, base frame: the origins of the base and of every joint; the tip is the last."""
+    return np.array([position for position, _ in link_poses(links, q_rad)])
 
 
 def size_of(geometry):
@@ -88,40 +89,42 @@ def size_of(geometry):
 
 
 def shapes(urdf, base, tip):
-    """The collision shapes of the chain's links; rods from joint to joint where all that there is are meshes."""
-    joints, links = path(urdf, base, tip)
+    """The collision shapes of the chain's links. If there are only meshes: a capsule from joint to joint instead."""
+    joints, links = parse(urdf, base, tip)
     found = []
     for frame, name in enumerate([base, *(joint.find("child").get("link") for joint in joints)]):
         for collision in links[name].findall("collision"):
             if collision.find("geometry")[0].tag != "mesh":
                 found.append(Shape(name, frame, *size_of(collision.find("geometry")),
-                                   vector(collision, "origin", "xyz"), rotation_of(*vector(collision, "origin", "rpy"))))
-    return found or [rod(joint.find("parent").get("link"), frame, vector(joint, "origin", "xyz"))
+                                   vector(collision, "origin", "xyz"),
+                                   rotation_of_rpy(*vector(collision, "origin", "rpy"))))
+    return found or [capsule_to(joint.find("parent").get("link"), frame, vector(joint, "origin", "xyz"))
                      for frame, joint in enumerate(joints) if vector(joint, "origin", "xyz").any()]
 
 
-def rod(link, frame, to, radius_m=0.03):
-    return Shape(link, frame, "capsule", (radius_m, float(np.linalg.norm(to))), to / 2, turn_of_z(to))
+def capsule_to(link, frame, end_m, radius_m=0.03):
+    """A capsule from the origin of the link to a point in the link's frame."""
+    return Shape(link, frame, "capsule", (radius_m, float(np.linalg.norm(end_m))), end_m / 2, rotation_from_z(end_m))
 
 
-def turn_of_z(direction):
-    """3x3: a rotation that takes z into the direction."""
+def rotation_from_z(direction):
+    """3x3: a rotation that maps the z axis to the direction."""
     z = direction / np.linalg.norm(direction)
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def quaternion_of(turn):
-    """w x y z of a 3x3 rotation: the eigenvector of its largest eigenvalue (Bar-Itzhack)."""
-    (a, b, c), (d, e, f), (g, h, i) = turn
+def quaternion_of(rotation):
+    """w x y z of a 3x3 rotation: the eigenvector of the largest eigenvalue of Bar-Itzhack's matrix."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
     _, vectors = np.linalg.eigh([[a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g],
                                  [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]])
     return vectors[:, -1]
 
 
-def turn_of(quaternion):
-    """3x3 of w x y z; the identity where it is zero, as a sphere's may be."""
+def rotation_of_quaternion(quaternion):
+    """3x3 of w x y z. A zero quaternion, which a sphere may have, gives the identity."""
     norm = np.linalg.norm(quaternion)
     if norm == 0:
         return np.eye(3)
@@ -132,32 +135,32 @@ def turn_of(quaternion):
 
 
 def section(config, name):
-    """What the configuration says there, which may be nothing; or one line and exit code 1."""
+    """A section of the configuration, empty if absent. A wrong file ends the script with one line and exit code 1."""
     try:
-        said = runs.load(config)
+        content = runs.load(config)
     except runs.RunFailed as error:
         sys.exit(str(error))
-    said = said.get(name) or {} if isinstance(said, dict) else said
-    if not isinstance(said, dict):
+    content = content.get(name) or {} if isinstance(content, dict) else content
+    if not isinstance(content, dict):
         sys.exit(f"{config}: not a configuration")
-    return said
+    return content
 
 
 def robot_of(config, arguments):
-    """(URDF, base, tip): the configuration's, and over it what the arguments say; or one line and exit code 1."""
-    said = section(config, "robot")
+    """(URDF, base, tip) of the configuration; arguments override it. A missing one ends the script with exit code 1."""
+    robot = section(config, "robot")
     for name in ROBOT:
-        if not (getattr(arguments, name) or said.get(name)):
+        if not (getattr(arguments, name) or robot.get(name)):
             sys.exit(f"{config}: robot has no {name}, and there is no --{name}")
-    return arguments.urdf or ROOT / said["urdf"], arguments.base or said["base"], arguments.tip or said["tip"]
+    return arguments.urdf or runs.ROOT / robot["urdf"], arguments.base or robot["base"], arguments.tip or robot["tip"]
 
 
 def channels_of(config):
-    """Name on the network -> one of bus.TYPES, as the configuration names them."""
-    said = section(config, "channels")
-    return {said.get(name.lower(), name): name for name in bus.TYPES}
+    """Channel name on the network -> key of wire.TYPES, by the section `channels` of the configuration."""
+    channels = section(config, "channels")
+    return {channels.get(name.lower(), name): name for name in wire.TYPES}
 
 
 def add_robot(parser):
     for name in ROBOT:
-        parser.add_argument(f"--{name}", help="over the configuration's")
+        parser.add_argument(f"--{name}", help="overrides the configuration")

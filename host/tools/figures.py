@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Figures of the scenarios under both laws, and the trade-off over the paper's gains."""
+"""Draw the scenarios under both laws, and the paper's trade-off over a sweep of its gains."""
 import argparse
 from pathlib import Path
 
@@ -12,7 +12,7 @@ SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in (
 
 
 def draw(scenario_file):
-    """Run both laws in lockstep and draw them; the files written."""
+    """Run a scenario with both laws in lockstep and draw it. Returns the files written."""
     name = scenario_file.stem
     laws = runs.in_parallel(runs.lockstep_runs, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
                                                  for law in runs.LAWS])
@@ -22,7 +22,7 @@ def draw(scenario_file):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenario", type=Path, action="append", metavar="FILE",
-                        help="draw this scenario instead, without the trade-off (may be repeated)")
+                        help="draw only this scenario, without the trade-off (may be repeated)")
     chosen = parser.parse_args().scenario
     for scenario_file in chosen or SCENARIOS:
         for file in draw(scenario_file.absolute()):

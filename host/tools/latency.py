@@ -1,4 +1,4 @@
-"""Wake-up latencies: the controller's, as it prints them at its end, and cyclictest's beside it."""
+"""Wake-up latencies of the controller, as it prints them at exit, and of cyclictest on the same machine."""
 import os
 import re
 import subprocess
@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import runs
 
-PRIORITY = 80  # FIFO, as the controller's loop
-LONGEST_US = 20_000  # of cyclictest's histogram; the worst beyond it is known, too
+PRIORITY = 80  # FIFO priority, equal to that of the controller's loop
+LONGEST_US = 20_000  # last bin of cyclictest's histogram; cyclictest also reports the worst latency beyond it
 
 
 class Latency(NamedTuple):
@@ -27,20 +27,20 @@ class Loop(NamedTuple):
 
 
 def loop_of(log):
-    """What the controller said at its end."""
+    """The timing that the controller printed at exit."""
     text = log.read_text(errors="replace")
     ended = re.search(r"(\d+) cycles, (\d+) skipped", text)
     rows = {name: [float(value) for value in values.split()]
             for name, values in re.findall(r"^(wake-up latency|CPU time, cycle)((?: +[\d.]+){4})$", text, re.M)}
     if not ended or len(rows) < 2:
-        raise runs.RunFailed(f"build/controller printed no times: {runs.last_line(log)}")
+        raise runs.RunFailed(f"build/controller printed no timing: {runs.last_line(log)}")
     cycles, skipped = map(int, ended.groups())
     return Loop(cycles, skipped, Latency(*rows["wake-up latency"], cycles), rows["CPU time, cycle"][3],
                 "is not permitted" not in text)
 
 
 def start_cyclictest(interval_us, duration_s, threads, output):
-    """cyclictest under FIFO, or None where that is not permitted; each of several threads has a CPU of its own."""
+    """cyclictest with FIFO scheduling, or None if not permitted. Several threads are pinned to one CPU each."""
     probe = subprocess.run(["cyclictest", "-q", "-l", "1", "-p", str(PRIORITY)], capture_output=True)
     if probe.returncode:
         return None
@@ -50,7 +50,7 @@ def start_cyclictest(interval_us, duration_s, threads, output):
 
 
 def histogram_of(log):
-    """({latency in us: how often}, the worst) of all of cyclictest's threads together."""
+    """({latency in us: count}, worst latency in us) over all threads of cyclictest."""
     text = log.read_text(errors="replace")
     bins = {int(us): sum(map(int, counts.split()))
             for us, counts in re.findall(r"^(\d{6}) ((?:\d{6}\s*?)+)$", text, re.M)}
@@ -67,10 +67,10 @@ def cyclictest_of(log):
     total = sum(bins.values())
 
     def quantile(share):
-        seen = 0
+        count = 0
         for us in sorted(bins):
-            seen += bins[us]
-            if seen >= share * total:
+            count += bins[us]
+            if count >= share * total:
                 return us
         return worst_us
 
@@ -78,5 +78,5 @@ def cyclictest_of(log):
 
 
 def busy_loops():
-    """One process for each CPU that never rests."""
+    """One process with an endless loop for each CPU."""
     return [subprocess.Popen(["sh", "-c", "while :; do :; done"], process_group=0) for _ in range(os.cpu_count())]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Play a scenario: Sidestep in real time, then both laws in lockstep for a table and figures.
+"""Run a scenario: Sidestep in real time, then both laws in lockstep for a table and figures.
 
-The real-time run is on the default LCM bus: lcm-spy, watch.py and the send_* scripts can join. The exit code is the
-simulator's: 0 expectations held, 1 not.
+The real-time run uses the default LCM network, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
+is that of the simulator: 0 if the scenario's expectations were met, 1 if not.
 """
 import argparse
 from pathlib import Path
@@ -12,13 +12,12 @@ import numpy as np
 import plots
 import runs
 
-
-NEIGHBOUR = "the same to the other arms"
+TO_OTHER_ARMS = "least clearance to the other arms"
 
 
 def contact(run):
-    touching = np.flatnonzero(np.minimum(run.columns["clearance_m"], run.columns["neighbour_clearance_m"]) < 0)
-    return f"yes, at {run.columns['t_s'][touching[0]]:.2f} s" if touching.size else "no"
+    in_contact = np.flatnonzero(np.minimum(run.columns["clearance_m"], run.columns["neighbour_clearance_m"]) < 0)
+    return f"yes, at {run.columns['t_s'][in_contact[0]]:.2f} s" if in_contact.size else "no"
 
 
 def metres(value_m):
@@ -26,7 +25,7 @@ def metres(value_m):
 
 
 def column(run):
-    """One law's figures, in the order of the table's rows."""
+    """The results of one law, in the order of the table's rows."""
     speeds = plots.family(run.columns, r"qd\d+_radps")
     return [metres(run.columns["axis_distance_m"].min()), plots.length(run.columns["target_distance_m"][-1]),
             metres(run.columns["clearance_m"].min()), metres(run.columns["neighbour_clearance_m"].min()),
@@ -35,12 +34,12 @@ def column(run):
 
 def table(paper, sidestep):
     published = paper.scenario.get("published") or {}
-    said = [metres(published.get("axis_distance_m", np.nan)),
+    expected = [metres(published.get("axis_distance_m", np.nan)),
             f"< {published['final_distance_m'] * 1000:g} mm" if "final_distance_m" in published else "-", *"----"]
-    rows = ["least distance, centre to axis", "target distance at the end", "least clearance, surface to surface",
-            NEIGHBOUR, "largest joint speed", "contact"]
-    lines = [("", "published", "paper's law", "sidestep"), *zip(rows, said, column(paper), column(sidestep))]
-    lines = [line for line in lines if line[0] != NEIGHBOUR or "arms" in paper.scenario]
+    rows = ["least distance, obstacle centre to arm axis", "distance to target at the end",
+            "least clearance, surface to surface", TO_OTHER_ARMS, "largest joint speed", "contact"]
+    lines = [("", "published", "paper's law", "sidestep"), *zip(rows, expected, column(paper), column(sidestep))]
+    lines = [line for line in lines if line[0] != TO_OTHER_ARMS or "arms" in paper.scenario]
     widths = [max(map(len, cells)) for cells in zip(*lines)]
     return "\n".join(" | ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
 

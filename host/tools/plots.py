@@ -1,4 +1,4 @@
-"""Figures of runs: like figures 5 to 7 of the paper, one page per scenario and law."""
+"""Figures of runs, one page per scenario and law, in the manner of figures 5 to 7 of the paper."""
 import re
 
 import matplotlib
@@ -11,7 +11,7 @@ from matplotlib.ticker import MultipleLocator
 import arm
 from runs import FIGURES, LAWS, ROOT, config_of, load
 
-# Okabe and Ito's colours: told apart with every kind of colour vision.
+# The palette of Okabe and Ito, which stays distinguishable with every kind of colour vision.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PINK = ("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2",
                                                       "#D55E00", "#CC79A7")
 OBSTACLES = [RED, PINK, SKY, "#7A6A00", "0.35"]
@@ -20,7 +20,7 @@ LAW_COLOURS = {"paper": ORANGE, "sidestep": BLUE}
 LAW_LINES = {"paper": dict(color=ORANGE, linewidth=3), "sidestep": dict(color=BLUE, linewidth=1.6)}
 TARGET = GREEN
 GREY = "0.55"
-FAR_M = 0.7  # obstacles farther than this are not drawn in plots of distance
+FAR_M = 0.7  # upper end of the plots of obstacle distance
 
 plt.rcParams.update({"font.size": 9, "axes.titlesize": 10, "axes.grid": True, "grid.color": "0.9",
                      "axes.axisbelow": True, "axes.spines.top": False, "axes.spines.right": False,
@@ -47,7 +47,7 @@ def obstacle_colour(number):
 
 
 def obstacle_name(number):
-    """A legend entry; a crowd gets none from the seventh on."""
+    """The legend entry, which only the first six obstacles get."""
     return f"obstacle {number + 1}" if number < 6 else None
 
 
@@ -68,7 +68,7 @@ def draw_sphere(axes, centre, radius_m, colour, alpha):
 
 
 def radius_of(run, number):
-    """Of the ball an obstacle is drawn as; a capsule or a box is one of its smallest radius."""
+    """m, of the sphere that represents the obstacle. For a box: half its shortest edge."""
     obstacle = run.scenario["obstacles"][number]
     return obstacle["radius_m"] if "radius_m" in obstacle else min(obstacle["edges_m"]) / 2
 
@@ -81,7 +81,7 @@ def equal_scale(axes, points):
 
 
 def plot_space(axes, run):
-    """Tool, target and obstacle paths, the arm at start and end."""
+    """Paths of tool, target and obstacles, and the arm at the start and at the end."""
     columns, all_points = run.columns, []
     for row, colour, width, name in ((0, GREY, 3, "arm at start"), (-1, BLACK, 3, "arm at end")):
         points = arm_at(run, row)
@@ -93,17 +93,17 @@ def plot_space(axes, run):
     axes.scatter(*target[-1], color=TARGET, marker="*", s=70)
     all_points += [tool, target]
     for i in range(obstacle_count(columns)):
-        way, colour = path(columns, f"o{i + 1}"), obstacle_colour(i)
-        shown = way[:max(2, int(np.searchsorted(columns["t_s"], 2.0)))]  # they run far out of the picture
+        centre, colour = path(columns, f"o{i + 1}"), obstacle_colour(i)
+        shown = centre[:max(2, int(np.searchsorted(columns["t_s"], 2.0)))]  # a whole path would leave the picture
         axes.plot(*shown.T, color=colour, linestyle=":", label=obstacle_name(i))
-        draw_sphere(axes, way[0], radius_of(run, i), colour, 0.55)
+        draw_sphere(axes, centre[0], radius_of(run, i), colour, 0.55)
         if np.linalg.norm(shown[-1] - shown[0]) > 0.02:
             axes.quiver(*shown[-1], *(shown[-1] - shown[0]) / np.linalg.norm(shown[-1] - shown[0]) * 0.08, color=colour,
                         arrow_length_ratio=0.6, linewidth=1.6)
         all_points.append(shown)
     equal_scale(axes, np.concatenate(all_points))
     axes.set(xlabel="x, m", ylabel="y, m", zlabel="z, m",
-             title="Paths" + (" (obstacles at the start, first 2 s of their way)" if obstacle_count(columns) else ""))
+             title="Paths" + (" (obstacles: at the start, and their first 2 s)" if obstacle_count(columns) else ""))
     axes.tick_params(pad=-1, labelsize=8)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_major_locator(MultipleLocator(0.2))
@@ -112,18 +112,18 @@ def plot_space(axes, run):
 
 
 def plot_top(axes, run):
-    """The same from above, with the obstacles where they are when each is nearest to the arm."""
+    """The same paths from above, with each obstacle where it is nearest to the arm's axis."""
     columns = run.columns
     tool, target = path(columns, "tool"), path(columns, "target")
     for row, colour in ((0, GREY), (-1, BLACK)):
         axes.plot(*arm_at(run, row)[:, :2].T, color=colour, linewidth=3, marker="o", markersize=4)
     for i in range(obstacle_count(columns)):
-        way, colour = path(columns, f"o{i + 1}"), obstacle_colour(i)
-        axes.plot(*way[:, :2].T, color=colour, linestyle=":")
+        centre, colour = path(columns, f"o{i + 1}"), obstacle_colour(i)
+        axes.plot(*centre[:, :2].T, color=colour, linestyle=":")
         nearest = int(np.argmin(columns[f"o{i + 1}_axis_distance_m"]))
-        axes.add_patch(plt.Circle(way[nearest, :2], radius_of(run, i), color=colour, alpha=0.55, linewidth=0))
-        axes.annotate(f"{columns['t_s'][nearest]:.2f} s", way[nearest, :2], textcoords="offset points", xytext=(9, 7),
-                      color=colour, fontsize=8)
+        axes.add_patch(plt.Circle(centre[nearest, :2], radius_of(run, i), color=colour, alpha=0.55, linewidth=0))
+        axes.annotate(f"{columns['t_s'][nearest]:.2f} s", centre[nearest, :2], textcoords="offset points",
+                      xytext=(9, 7), color=colour, fontsize=8)
     axes.plot(*tool[:, :2].T, color=LAW_COLOURS[run.law], linewidth=2.2)
     axes.plot(*target[:, :2].T, color=TARGET, linestyle="--")
     axes.plot(*target[-1, :2], color=TARGET, marker="*", markersize=10)
@@ -131,15 +131,15 @@ def plot_top(axes, run):
     low, high = points.min(axis=0) - 0.15, points.max(axis=0) + 0.15
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x, m", ylabel="y, m")
     axes.set_aspect("equal", adjustable="box")
-    axes.set_title("From above" + (" (each obstacle when it is nearest)" if obstacle_count(columns) else ""))
+    axes.set_title("From above" + (" (each obstacle where it is nearest)" if obstacle_count(columns) else ""))
 
 
 def mark_foresight(axes, run):
-    """Grey where the arm follows a guide, darker where no way is known."""
-    t, outlook = run.columns["t_s"], run.columns["foresight"]
-    for value, label, alpha in ((1, "guided by foresight", 0.12), (2, "no way known", 0.3)):
-        if (outlook == value).any():
-            axes.fill_between(t, 0, 1, where=outlook == value, transform=axes.get_xaxis_transform(), color=BLACK,
+    """Light grey: foresight guides the arm. Darker grey: foresight has no path yet (WAITING)."""
+    t, foresight = run.columns["t_s"], run.columns["foresight"]
+    for value, label, alpha in ((1, "foresight: guided", 0.12), (2, "foresight: no path known", 0.3)):
+        if (foresight == value).any():
+            axes.fill_between(t, 0, 1, where=foresight == value, transform=axes.get_xaxis_transform(), color=BLACK,
                               alpha=alpha, linewidth=0, label=label)
 
 
@@ -160,7 +160,7 @@ def length(value_m):
 
 
 def plot_obstacle_distances(axes, run):
-    """Centre to axis, as the paper plots it."""
+    """Distance from obstacle centre to arm axis, as in the paper's figures."""
     columns, t = run.columns, run.columns["t_s"]
     for i in range(obstacle_count(columns)):
         axes.plot(t, columns[f"o{i + 1}_axis_distance_m"], color=obstacle_colour(i), label=obstacle_name(i))
@@ -169,11 +169,11 @@ def plot_obstacle_distances(axes, run):
               label=f"least: {columns['axis_distance_m'][least]:.4f} m")
     mark_radii(axes, run)
     axes.set(xlabel="time, s", ylabel="distance, m", title="Obstacle centre to arm axis", xlim=(0, None))
-    near_part(axes)
+    cut_at_far(axes)
 
 
-def near_part(axes):
-    """Only the distances that matter, and the legend where it covers none of them."""
+def cut_at_far(axes):
+    """Cuts the plot at FAR_M and puts the legend above it, where it covers no curve."""
     axes.set_ylim(0, min(axes.get_ylim()[1], FAR_M))
     axes.set_title(axes.get_title(), pad=34)
     axes.legend(ncol=3 if len(axes.get_legend_handles_labels()[0]) > 4 else 2, loc="lower center",
@@ -215,7 +215,7 @@ def plot_joints(axes, run, pattern, label, title):
 
 
 def page(run, file):
-    """One PNG of six panels for one run."""
+    """Writes one PNG of six panels for one run."""
     figure = plt.figure(figsize=(15, 8.6), layout="constrained")
     cells = figure.add_gridspec(2, 3, width_ratios=(1.15, 1, 1))
     figure.suptitle(f"{run.scenario['title']} ({LAWS[run.law]})", fontsize=13, fontweight="bold")
@@ -238,7 +238,7 @@ def plot_least_distance(axes, runs):
                   label=f"{LAWS[run.law]}: least {distance_m.min():.4f} m")
     mark_radii(axes, runs[0])
     axes.set(xlabel="time, s", ylabel="distance, m", title="Nearest obstacle centre to arm axis", xlim=(0, None))
-    near_part(axes)
+    cut_at_far(axes)
 
 
 def plot_fastest_joint(axes, runs):
@@ -268,7 +268,7 @@ def plot_both_paths(axes, runs):
 
 
 def comparison(runs, file):
-    """One PNG that lays both laws over each other."""
+    """Writes one PNG with the curves of both laws in common panels."""
     figure, panels = plt.subplots(2, 2, figsize=(11, 8), layout="constrained")
     figure.suptitle(f"{runs[0].scenario['title']} (both laws)", fontsize=13, fontweight="bold")
     plot_both_paths(panels[0, 0], runs)
@@ -283,7 +283,7 @@ def comparison(runs, file):
 
 
 def pages(runs):
-    """The pages of one scenario under both laws, and the two laid over each other; the files written."""
+    """Writes a page for each law of one scenario and a page that compares the laws. Returns the files."""
     written = [page(run, FIGURES / f"{run.name}-{run.law}.png") for run in runs]
     return [*written, comparison(runs, FIGURES / f"{runs[0].name}-both.png")]
 

@@ -1,34 +1,32 @@
 #!/usr/bin/env python3
-"""Write what is said on Sidestep's channels into an lcm log until Ctrl-C; lcm-logplayer reads it."""
+"""Record the messages of Sidestep's channels in an LCM log, for lcm-logplayer, until Ctrl-C."""
 import argparse
-import select
 import signal
 import sys
 import time
 
 import lcm
 
-import bus
+import wire
 
 
 def record(file, channels, lcm_url):
     """Returns the number of messages written."""
-    wire, written = bus.network(lcm_url), 0
+    network, written = wire.connect(lcm_url), 0
 
-    def keep(channel, data):
+    def write(channel, data):
         nonlocal written
         log.write_event(int(time.time() * 1e6), channel, data)
         written += 1
 
     for channel in channels:
-        if (heard := wire.subscribe(channel, keep)) is None:
-            sys.exit(f"cannot listen to '{channel}': not a regular expression")
-        heard.set_queue_capacity(1000)
-    log = lcm.EventLog(file, "w", overwrite=True)  # not before all is well: it replaces an old one
+        if (subscription := network.subscribe(channel, write)) is None:
+            sys.exit(f"cannot subscribe to '{channel}': not a regular expression")
+        subscription.set_queue_capacity(1000)
+    log = lcm.EventLog(file, "w", overwrite=True)  # opened last, because it replaces an existing log
     try:
         while True:
-            select.select([wire], [], [])  # waits where Ctrl-C is heard
-            wire.handle_timeout(10)  # ms; handle() would wait on for the rest of a broken message
+            wire.handle_messages(network)
     except KeyboardInterrupt:
         log.close()
     return written
@@ -36,11 +34,11 @@ def record(file, channels, lcm_url):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("log", metavar="LOG", help="the file to write; an old one is replaced")
-    parser.add_argument("--channels", nargs="+", default=list(bus.TYPES), metavar="NAME", help="default: %(default)s")
-    bus.add_lcm_url(parser)
+    parser.add_argument("log", metavar="LOG", help="file to write; an existing one is replaced")
+    parser.add_argument("--channels", nargs="+", default=list(wire.TYPES), metavar="NAME", help="default: %(default)s")
+    wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    for stop in (signal.SIGINT, signal.SIGTERM):  # a background job is born deaf to the first
+    for stop in (signal.SIGINT, signal.SIGTERM):  # a shell starts background jobs with SIGINT ignored
         signal.signal(stop, signal.default_int_handler)
     try:
         open(arguments.log, "ab").close()
@@ -49,7 +47,7 @@ def main():
     try:
         count = record(arguments.log, arguments.channels, arguments.lcm_url)
     except KeyboardInterrupt:
-        sys.exit("stopped before it began to listen")
+        sys.exit("stopped before the recording began")
     print(f"{count} messages in {arguments.log}")
 
 

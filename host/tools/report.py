@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Turn an lcm-logger log of a run into one HTML page that needs nothing else: 3-D replay and curves.
+"""Turn an LCM log of a run into one self-contained HTML page with a 3-D replay and curves.
 
-Logs of build/sim --log, of host/tools/record.py and of lcm-logger are all alike. The arm is that of --config, heard on
-its channels; of a log that `make run` wrote, that of the scenario, and the first where there are two.
+The log may come from build/sim --log, record.py or lcm-logger. The arm and its channels are those of --config. Without
+--config they are those of the scenario after which `make run` has named the log (its first arm, if it has two).
 """
 import argparse
 import json
@@ -13,35 +13,35 @@ from pathlib import Path
 import lcm
 
 import arm
-import bus
 import runs
+import wire
 
-FRAME_S = 0.03   # between two pictures of the replay
+FRAME_S = 0.03   # least time between two frames of the replay
 MOST_FRAMES = 4000
 
 
 class NoRun(Exception):
-    """The text is one line that says what the log lacks."""
+    """The log cannot be shown; the text is one line with the reason."""
 
 
 def samples(file, channels=None):
-    """Yields (t_s, channel -> newest message) after every CONTROLLER_STATUS that follows an arm state.
+    """Yields (t_s, kind -> latest message) at every CONTROLLER_STATUS after the first arm state.
 
-    channels: name in the log -> one of bus.TYPES; default: each by its own name.
+    channels: channel name in the log -> kind, a key of wire.TYPES; by default the two are equal.
     """
-    newest, start_us, channels = {}, None, channels or {name: name for name in bus.TYPES}
+    latest, start_us, channels = {}, None, channels or {kind: kind for kind in wire.TYPES}
     for event in lcm.EventLog(str(file)):
-        name = channels.get(event.channel)
-        if name is None or (message := bus.decoded(name, event.data)) is None:
+        kind = channels.get(event.channel)
+        if kind is None or (message := wire.decoded(kind, event.data)) is None:
             continue
-        newest[name] = message
-        if name == "CONTROLLER_STATUS" and "ARM_STATE" in newest:
+        latest[kind] = message
+        if kind == "CONTROLLER_STATUS" and "ARM_STATE" in latest:
             start_us = event.timestamp if start_us is None else start_us
-            yield (event.timestamp - start_us) / 1e6, dict(newest)
+            yield (event.timestamp - start_us) / 1e6, dict(latest)
 
 
 def thinned(rows):
-    """At most one row in FRAME_S, and fewer of a long run."""
+    """The rows at a distance of at least FRAME_S, about MOST_FRAMES of them at most."""
     step_s = max(FRAME_S, rows[-1][0] / MOST_FRAMES)
     kept, due_s = [], 0.0
     for row in rows:
@@ -52,42 +52,45 @@ def thinned(rows):
 
 
 def numbers(values, digits=4):
-    """For JSON, which has no infinity."""
+    """Rounded numbers for JSON, which has no infinity and no NaN: None stands for both."""
     return [round(float(value), digits) if math.isfinite(value) else None for value in values]
 
 
-def shape_places(shapes, frames):
-    """Per shape its centre and the rows of its rotation, base frame, 12 numbers."""
-    placed = []
+def shape_poses(shapes, links):
+    """12 numbers for each shape: its centre, m, and its rotation by rows, base frame."""
+    poses = []
     for shape in shapes:
-        place, turn = frames[shape.frame]
-        placed.append(numbers([*(place + turn @ shape.place), *(turn @ shape.turn).ravel()]))
-    return placed
+        position, rotation = links[shape.frame]
+        poses.append(numbers([*(position + rotation @ shape.position), *(rotation @ shape.rotation).ravel()]))
+    return poses
 
 
-def obstacle_rows(message):
-    return [[obstacle.shape, *numbers([*obstacle.size, *obstacle.position, *arm.turn_of(obstacle.quaternion).ravel(),
-                                       *obstacle.velocity])] for obstacle in message.obstacles] if message else []
+def obstacle_row(obstacle):
+    """Shape, size, centre, rotation by rows, velocity."""
+    return [obstacle.shape, *numbers([*obstacle.size, *obstacle.position,
+                                      *arm.rotation_of_quaternion(obstacle.quaternion).ravel(), *obstacle.velocity])]
 
 
-def picture(heard, links, shapes):
-    """What one moment of the replay shows."""
-    frames = arm.frames(links, heard["ARM_STATE"].joint_position)
-    target = heard.get("TARGET")
-    return {"arm": shape_places(shapes, frames), "tool": numbers(frames[-1][0]),
-            "target": numbers(target.position) if target else None, "obstacles": obstacle_rows(heard.get("OBSTACLES"))}
+def frame_of(messages, chain, shapes):
+    """One frame of the replay."""
+    links = arm.link_poses(chain, messages["ARM_STATE"].joint_position)
+    target, obstacles = messages.get("TARGET"), messages.get("OBSTACLES")
+    return {"arm": shape_poses(shapes, links), "tool": numbers(links[-1][0]),
+            "target": numbers(target.position) if target else None,
+            "obstacles": [obstacle_row(obstacle) for obstacle in obstacles.obstacles] if obstacles else []}
 
 
 def joint_lines(rows, field, count):
-    return {f"q{i + 1}": numbers(getattr(heard["ARM_STATE"], field)[i] for _, heard in rows) for i in range(count)}
+    return {f"q{i + 1}": numbers(getattr(messages["ARM_STATE"], field)[i] for _, messages in rows)
+            for i in range(count)}
 
 
 def status_line(rows, field, factor=1.0):
-    return numbers(getattr(heard["CONTROLLER_STATUS"], field) * factor for _, heard in rows)
+    return numbers(getattr(messages["CONTROLLER_STATUS"], field) * factor for _, messages in rows)
 
 
 def curves(rows, joints):
-    """(title, name -> values) of every plot."""
+    """[(title, curve name -> values)], one pair for each plot."""
     return [("Tool to target, m", {"distance": status_line(rows, "target_distance")}),
             ("Clearance, m", {"clearance": status_line(rows, "clearance")}),
             ("Joint angles, rad", joint_lines(rows, "joint_position", joints)),
@@ -99,17 +102,17 @@ def curves(rows, joints):
 def data_of(log, robot, channels=None):
     if not log.is_file():
         raise NoRun(f"{log}: no such file")
-    links, shapes = arm.chain(*robot), arm.shapes(*robot)
-    joints = sum(axis is not None for _, _, axis in links)
+    chain, shapes = arm.chain(*robot), arm.shapes(*robot)
+    joints = sum(axis is not None for _, _, axis in chain)
     rows = [row for row in samples(log, channels) if row[1]["ARM_STATE"].num_joints == joints]
     if not rows:
-        raise NoRun(f"{log}: no CONTROLLER_STATUS with an ARM_STATE of {joints} joints before it")
+        raise NoRun(f"{log}: no CONTROLLER_STATUS after an ARM_STATE of {joints} joints")
     frames = thinned(rows)
     lines = thinned(rows) if len(rows) > 4 * MOST_FRAMES else rows
     return {"title": log.name, "shapes": [[shape.kind, *shape.size] for shape in shapes],
-            "t": numbers(t for t, _ in frames), "frames": [picture(heard, links, shapes) for _, heard in frames],
-            "messages": [f"{bus.MODES.get(heard['CONTROLLER_STATUS'].mode)} {heard['CONTROLLER_STATUS'].message}"
-                         for _, heard in frames],
+            "t": numbers(t for t, _ in frames), "frames": [frame_of(messages, chain, shapes) for _, messages in frames],
+            "messages": [f"{wire.MODES.get(status.mode)} {status.message}"
+                         for status in (messages["CONTROLLER_STATUS"] for _, messages in frames)],
             "curve_t": numbers(t for t, _ in lines), "curves": curves(lines, joints)}
 
 
@@ -120,8 +123,8 @@ def page(data):
 
 
 def config_for(log):
-    """What the scenario that a log is named after was played with; else the LWA3's."""
-    scenario_file = arm.ROOT / "host/scenarios" / f"{log.stem.removesuffix('-realtime')}.yaml"
+    """The configuration of the scenario after which the log is named, else that of the LWA3."""
+    scenario_file = runs.ROOT / "host/scenarios" / f"{log.stem.removesuffix('-realtime')}.yaml"
     if not scenario_file.is_file():
         return arm.CONFIG
     return runs.config_of(runs.arms_of(runs.load_scenario(scenario_file))[0])
@@ -130,8 +133,11 @@ def config_for(log):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", type=Path, metavar="LOG")
-    parser.add_argument("-o", "--output", type=Path, default=Path("report.html"), help="default: %(default)s")
-    parser.add_argument("--config", type=Path, help="default: of the scenario that LOG is named after, else the LWA3's")
+    parser.add_argument("-o", "--output", type=Path, default=Path("report.html"),
+                        help="page to write (default: %(default)s)")
+    parser.add_argument("--config", type=Path,
+                        help="configuration of the controller (default: that of the scenario after which LOG is named, "
+                             "else that of the LWA3)")
     arm.add_robot(parser)
     arguments = parser.parse_args()
     try:

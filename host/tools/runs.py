@@ -1,4 +1,4 @@
-"""Runs of build/controller against build/sim, and what they recorded."""
+"""Runs of build/controller with build/sim, and the results that they record."""
 import csv
 import random
 import signal
@@ -18,13 +18,13 @@ BUILD = ROOT / "build"
 FIGURES = BUILD / "figures"
 RECORDS = BUILD / "runs"
 LAWS = {"paper": "the paper's law", "sidestep": "Sidestep"}
-HELD, BROKEN = 0, 1  # exit codes of a simulation that ran to its end: its expectations held or did not
+HELD, BROKEN = 0, 1  # exit codes of a completed simulation: its expectations were met, or not
 
 stopping = threading.Event()
 
 
 class RunFailed(Exception):
-    """A process ended otherwise than it should; the text is one line that says how."""
+    """A process failed; the text is one line with the reason."""
 
     def __init__(self, text, code=2):
         super().__init__(text)
@@ -32,11 +32,11 @@ class RunFailed(Exception):
 
 
 class Run(NamedTuple):
-    name: str       # of the scenario
+    name: str       # of the scenario's file, for two arms with the arm's name
     law: str
     scenario: dict
-    columns: dict   # of the simulator's CSV, arrays
-    code: int       # exit code of the simulator
+    columns: dict   # column name of the simulator's CSV -> array
+    code: int       # exit code of the simulator: HELD or BROKEN
 
 
 def load(file):
@@ -48,7 +48,7 @@ def load(file):
 
 
 def load_scenario(file):
-    """What the scripts themselves need of a scenario is there; the simulator checks the rest."""
+    """A scenario. Only the keys that the scripts use are checked; the simulator checks the others."""
     scenario = load(file)
     check(file, scenario, title=str, duration_s=(int, float))
     if "arms" in scenario:
@@ -61,17 +61,17 @@ def load_scenario(file):
 def check(file, section, **kinds):
     for key, kind in kinds.items():
         if not isinstance(section, dict) or not isinstance(section.get(key), kind) or not section[key]:
-            raise RunFailed(f"{file}: {key} is missing, empty or not of its kind")
+            raise RunFailed(f"{file}: {key} is missing, empty or of the wrong type")
 
 
 def arms_of(scenario):
-    """A scenario for each of its arms; the scenario itself when it is of one arm."""
+    """One scenario for each arm; for a single arm the scenario itself."""
     return [scenario | arm | {"title": f"{scenario['title']}: {arm['name']}"} for arm in scenario.get("arms", [])] or [
         scenario]
 
 
 def file_of(arm, file):
-    """Where the simulator writes what is one arm's."""
+    """The file for one arm: of several arms each has its own, with the arm's name before the suffix."""
     return file.with_stem(f"{file.stem}-{arm['name']}") if "name" in arm else file
 
 
@@ -94,7 +94,7 @@ def numeric(column):
 
 
 def private_url():
-    """An LCM bus that stays on this machine and that nobody else is likely to use."""
+    """An LCM network on this machine only, with a random port so that parallel runs do not meet."""
     return f"udpm://239.255.76.67:{random.randint(20000, 32000)}?ttl=0"
 
 
@@ -102,7 +102,7 @@ def start(command, output):
     program = Path(command[0])
     if not program.exists():
         raise RunFailed(f"{program.relative_to(ROOT)} is missing: run make")
-    # A process group of its own: Ctrl-C reaches this script first, which then stops the processes in order.
+    # In its own process group: Ctrl-C reaches this script only, which then stops the processes in order.
     return subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=output, stderr=output,
                             cwd=ROOT, process_group=0)
 
@@ -119,30 +119,30 @@ def stop(process):
 
 
 def ending(code):
-    return f"ended with exit code {code}" if code >= 0 else f"was ended by {signal.Signals(-code).name}"
+    return f"ended with exit code {code}" if code >= 0 else f"was terminated by {signal.Signals(-code).name}"
 
 
 def last_line(log):
     lines = log.read_text(errors="replace").split("\n") if log.exists() else []
-    return next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
+    return next((line.strip() for line in reversed(lines) if line.strip()), "no output")
 
 
 def wait(processes, limit_s):
-    """Until one of them ends."""
+    """Returns when one of the processes has ended."""
     deadline = time.monotonic() + limit_s
     while all(process.poll() is None for process in processes.values()):
         if stopping.is_set():
             raise KeyboardInterrupt
         if time.monotonic() > deadline:
-            raise RunFailed(f"build/sim is not done after {limit_s:.0f} s")
+            raise RunFailed(f"build/sim is not finished after {limit_s:.0f} s")
         time.sleep(0.005)
 
 
 def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
-    In real time (not lockstep) the simulator writes to this terminal. It keeps all messages in `log`. RunFailed when a
-    process fails.
+    In real time (lockstep=False) the simulator writes to this terminal. It records all messages in `log`. RunFailed if
+    a process fails.
     """
     scenario = load_scenario(scenario_file)
     record.parent.mkdir(parents=True, exist_ok=True)
@@ -164,8 +164,8 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
         codes = {name: stop(process) for name, process in reversed(processes.items())}
     sim = codes.pop("sim")
     if not lost and sim not in (HELD, BROKEN):
-        said = f": {last_line(logs['sim'])}" if lockstep else ""
-        raise RunFailed(f"build/sim {ending(sim)}{said}", sim)
+        reason = f": {last_line(logs['sim'])}" if lockstep else ""
+        raise RunFailed(f"build/sim {ending(sim)}{reason}", sim)
     for name, code in codes.items():
         if code or name in lost:
             raise RunFailed(f"build/controller {ending(code)}: {last_line(logs[name])}")
@@ -173,19 +173,19 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
 
 
 def lockstep_runs(scenario_file, law, record, config=None):
-    """One run on its own LCM bus, as fast as it goes: what came of each of its arms."""
+    """One run in lockstep on its own LCM network. Returns a Run for each arm."""
     code = execute(scenario_file, law, record, config, private_url())
     return [Run(file_of(arm, Path(scenario_file)).stem, law, arm, read_csv(file_of(arm, record)), code)
             for arm in arms_of(load_scenario(scenario_file))]
 
 
 def lockstep_run(scenario_file, law, record, config=None):
-    """The same of one arm."""
+    """lockstep_runs() of a scenario with one arm."""
     return lockstep_runs(scenario_file, law, record, config)[0]
 
 
 def in_parallel(function, jobs, workers=2, done=lambda count, total: None):
-    """[function(*job) for job in jobs], two at a time; `done` hears how far it is. Ctrl-C ends all of them."""
+    """[function(*job) for job in jobs], `workers` at a time. Calls done(finished, total). Ctrl-C ends all of them."""
     with ThreadPoolExecutor(workers) as pool:
         futures = [pool.submit(function, *job) for job in jobs]
         try:
@@ -201,7 +201,7 @@ def in_parallel(function, jobs, workers=2, done=lambda count, total: None):
 
 
 def main_of(script):
-    """Run a script's function; Ctrl-C and SIGTERM stop its processes. Exits with the function's return value."""
+    """Run a script's main function and exit with its return value. Ctrl-C and SIGTERM stop its processes."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         sys.exit(script())
@@ -214,7 +214,7 @@ def main_of(script):
 
 
 def progress(text):
-    """A line for in_parallel's `done` that overwrites itself."""
+    """A progress bar for in_parallel's `done`."""
     def done(count, total):
         if sys.stdout.isatty() or count == total:
             bar = "#" * (30 * count // total)
@@ -223,5 +223,5 @@ def progress(text):
 
 
 def shown(path):
-    """A path as the user would type it."""
+    """The path relative to the project, if it lies in the project."""
     return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)

@@ -1,34 +1,34 @@
 #!/usr/bin/env python3
 """Publish obstacles on OBSTACLES, 50 times a second, until Ctrl-C.
 
-Spheres that move with their velocity, or a crowd: from a CSV file, random, or a walking person. The message is always
-the full set: what is not in it counts for 0.3 s more and is gone. No obstacle at all sends the empty set.
+The obstacles are spheres of constant velocity, or a crowd: from a CSV file, random, or a walking person. Each message
+contains the full set. The controller keeps an obstacle that is missing in it for another 0.3 s (timeouts.coast_s).
+Without obstacles the empty set is sent.
 """
 import argparse
-import time
 
-import bus
 import crowds
+import wire
 
-MOST = 4096  # a controller rejects what has more
+MOST = 4096  # the controller rejects a message with more obstacles
 
 
 def send(crowd, lcm_url):
-    """crowd: seconds since the start -> the obstacles."""
-    wire, message, start = bus.network(lcm_url), bus.obstacles_t(), time.time()
-    while True:
-        message.utime = int(time.time() * 1e6)
-        message.obstacles = crowd(time.time() - start)
+    """crowd: function from seconds since the start to a list of obstacles."""
+    message = wire.obstacles_t()
+
+    def message_at(t_s):
+        message.obstacles = crowd(t_s)
         message.num_obstacles = len(message.obstacles)
-        wire.publish("OBSTACLES", message.encode())
-        time.sleep(0.02)
+        return message
+    wire.publish("OBSTACLES", message_at, lcm_url)
 
 
 def numbers(text):
     words = text.split(",")
     if len(words) not in (4, 7):
         raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
-    centre, velocity = ([bus.finite(word) for word in part] for part in (words[:3], words[4:]))
+    centre, velocity = ([wire.finite(word) for word in part] for part in (words[:3], words[4:]))
     return [*centre, crowds.radius(words[3]), *(velocity or [0.0] * 3)]
 
 
@@ -42,8 +42,8 @@ def crowd_of(arguments):
     spheres = [numbers(text) for text in arguments.spheres]
     if arguments.csv is None and arguments.random is None and not arguments.person:
         return crowds.straight(spheres)
-    if spheres:  # or they would not be sent, which says that they are not there
-        raise ValueError("spheres do not go together with --csv, --random or --person")
+    if spheres:  # they would be ignored, and the controller would assume that they do not exist
+        raise ValueError("spheres cannot be combined with --csv, --random or --person")
     if arguments.csv is not None:
         return crowds.from_csv(arguments.csv)
     return crowds.walking() if arguments.person else crowds.wandering(arguments.random, arguments.seed)
@@ -55,24 +55,24 @@ def main():
                                      epilog="Centre and radius in m, velocity in m/s (default 0).")
     parser.add_argument("spheres", nargs="*", help=argparse.SUPPRESS)
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--csv", metavar="FILE", help="spheres by columns t_s, id, x_m, y_m, z_m, radius_m")
-    kind.add_argument("--random", type=count, metavar="N", help="N spheres that wander around the arm")
-    kind.add_argument("--person", action="store_true", help="somebody who walks past the arm, to and fro, as capsules")
-    parser.add_argument("--seed", type=int, default=1, help="of the random ones (default %(default)s)")
-    bus.add_lcm_url(parser)
-    arguments = parser.parse_intermixed_args(bus.words())
+    kind.add_argument("--csv", metavar="FILE",
+                      help="spheres from a file with the columns t_s, id, x_m, y_m, z_m, radius_m")
+    kind.add_argument("--random", type=count, metavar="N",
+                      help="N spheres that oscillate about random points near the arm")
+    kind.add_argument("--person", action="store_true",
+                      help="a person of capsules who walks back and forth past the arm")
+    parser.add_argument("--seed", type=int, default=1, help="seed of --random (default %(default)s)")
+    wire.add_lcm_url(parser)
+    arguments = parser.parse_intermixed_args(wire.command_line())
     try:
         crowd = crowd_of(arguments)
         if (most := len(crowd(0.0))) > MOST:
-            raise ValueError(f"{most} obstacles are more than the {MOST} that a message may have")
+            raise ValueError(f"{most} obstacles are more than the {MOST} that a message may contain")
     except KeyError as error:
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:
         parser.error(str(error))
-    try:
-        send(crowd, arguments.lcm_url)
-    except KeyboardInterrupt:
-        pass
+    send(crowd, arguments.lcm_url)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Run one controller in real time for long while its simulator is killed and started again at random moments.
+"""Endurance test: one controller in real time, while its simulator is killed and restarted at random times.
 
-Every life of the simulator has another world: a target that wanders, obstacles that circle, noise on what is sensed and
-lost messages. At the end: memory flat, no contact, no cycle left out that the machine did not cause, and the newest
-blackbox log replays bit for bit. Exit code 0 when all of that holds, else 1.
+Every run of the simulator has other random obstacles on circles and another moving target, with sensor noise and lost
+messages. Checked at the end: constant memory, no contact, no skipped cycle that the machine did not cause, and a newest
+blackbox log that replays bit for bit. Exit code 0 if all checks pass, else 1.
 """
 import argparse
 import math
@@ -22,20 +22,20 @@ import latency
 import runs
 
 FOLDER = runs.RECORDS / "soak"
-WARM_UP_S = 20  # until then memory may grow
+WARM_UP_S = 20  # memory growth during this time is ignored
 MOST_GROWTH_KB = 512
-LATE_US = 5000  # half a period: who wakes up later than that has had no CPU
+LATE_US = 5000  # half a period; a later wake-up shows that the machine gave the process no CPU time
 
 
 def circling(rng, number, until_s):
-    """A sphere on a circle around the arm's base, not where the arm begins."""
+    """A sphere on a circle around the arm's base, clear of the arm's start configuration."""
     radius_m, height_m, start = rng.uniform(0.5, 0.75), rng.uniform(0.4, 1.1), rng.uniform(-1.5, 1.5)
     rate_radps = rng.choice((-1, 1)) * rng.uniform(0.08, 0.2) / radius_m
 
     def at(t_s):
         angle = start + rate_radps * t_s
-        place = [radius_m * math.cos(angle), radius_m * math.sin(angle), height_m]
-        return place, [-rate_radps * place[1], rate_radps * place[0], 0.0]
+        centre = [radius_m * math.cos(angle), radius_m * math.sin(angle), height_m]
+        return centre, [-rate_radps * centre[1], rate_radps * centre[0], 0.0]
 
     position, velocity = at(0.0)
     return {"id": number, "shape": "sphere", "radius_m": 0.05, "position_m": position, "velocity_mps": velocity,
@@ -43,13 +43,13 @@ def circling(rng, number, until_s):
 
 
 def wandering(rng, until_s):
-    """A target that rests every four seconds at another place within reach."""
-    def place():
+    """A target within reach that arrives at another random point every four seconds."""
+    def point():
         angle, radius_m = rng.uniform(-2.5, 2.5), rng.uniform(0.3, 0.5)
         return [radius_m * math.cos(angle), radius_m * math.sin(angle), rng.uniform(0.6, 1.0)]
 
-    return {"position_m": place(), "velocity_mps": [0.0, 0.0, 0.0],
-            "waypoints": [[float(t_s), *place(), 0.0, 0.0, 0.0] for t_s in range(4, until_s, 4)]}
+    return {"position_m": point(), "velocity_mps": [0.0, 0.0, 0.0],
+            "waypoints": [[float(t_s), *point(), 0.0, 0.0, 0.0] for t_s in range(4, until_s, 4)]}
 
 
 def scenario_of(rng, duration_s):
@@ -71,10 +71,10 @@ def resident_kb(process):
     return int(status.split("VmRSS:")[1].split()[0])
 
 
-def live(rng, controller, url, output, until_s, memory):
-    """One life of the simulator; returns the least clearance, m, or None when it did not live to track."""
+def run_simulator(rng, controller, url, output, until_s, memory):
+    """One run of the simulator until it is killed. Returns the least clearance, m, or None if tracking never began."""
     span_s = min(rng.uniform(5, 40), max(3.0, until_s - time.monotonic()))
-    record = FOLDER / "life.csv"
+    record = FOLDER / "sim.csv"
     sim = runs.start([runs.BUILD / "sim", "--scenario", scenario_of(rng, int(span_s) + 20), "--csv", record, "--quiet",
                       "--lcm-url", url], output)
     try:
@@ -101,18 +101,19 @@ def controller_config():
 
 
 def soak(duration_s, rng):
-    """(least clearances of the lives, memory samples) of one controller."""
+    """(least clearance of each run of the simulator, memory samples of the controller)."""
     url, clearances, memory, processes = runs.private_url(), [], [], []
     with open(FOLDER / "controller.log", "w") as controller_log, open(FOLDER / "sim.log", "w") as sim_log, \
-            open(FOLDER / "cyclictest.log", "w") as witness_log:
+            open(FOLDER / "cyclictest.log", "w") as cyclictest_log:
         try:
             controller = runs.start([runs.BUILD / "controller", "--config", controller_config(), "--lcm-url", url],
                                     controller_log)
-            witness = latency.start_cyclictest(1000, duration_s + 120, os.cpu_count(), witness_log)
-            processes = [controller] + ([witness] if witness else [])
+            processes.append(controller)
+            cyclictest = latency.start_cyclictest(1000, duration_s + 120, os.cpu_count(), cyclictest_log)
+            processes += [cyclictest] if cyclictest else []
             until_s = time.monotonic() + duration_s
             while time.monotonic() < until_s:
-                clearances.append(live(rng, controller, url, sim_log, until_s, memory))
+                clearances.append(run_simulator(rng, controller, url, sim_log, until_s, memory))
                 time.sleep(rng.uniform(0.0, 2.0))
         finally:
             codes = [runs.stop(process) for process in processes]
@@ -122,19 +123,20 @@ def soak(duration_s, rng):
 
 
 def growth_kb(memory):
-    """Of the controller's resident memory after warming up: the last quarter's mean over the first quarter's."""
+    """(growth, last value) of the resident memory. Growth: mean of the last quarter less mean of the first quarter."""
     values = [kb for at_s, kb in memory if at_s - memory[0][0] > WARM_UP_S] or [memory[-1][1]]
     quarter = max(1, len(values) // 4)
     return float(np.mean(values[-quarter:]) - np.mean(values[:quarter])), values[-1]
 
 
-def late_witnesses():
+def late_wake_ups():
+    """(number of cyclictest's wake-ups later than LATE_US, worst latency in us)."""
     bins, worst_us = latency.histogram_of(FOLDER / "cyclictest.log")
     return sum(count for us, count in bins.items() if us >= LATE_US), worst_us
 
 
-def judge(clearances, memory):
-    """Lines for the summary, each with whether it is as it must be."""
+def checks(clearances, memory):
+    """Yields (passed, line of the summary)."""
     loop = latency.loop_of(FOLDER / "controller.log")
     tracked = [clearance for clearance in clearances if clearance is not None]
     grown_kb, last_kb = growth_kb(memory)
@@ -142,30 +144,31 @@ def judge(clearances, memory):
     replay = subprocess.run([runs.BUILD / "replay", logs[-1]] if logs else ["false"], capture_output=True, text=True,
                             cwd=runs.ROOT)
     try:
-        late, worst_us = late_witnesses()
-        witness = f"cyclictest beside it: {late} wake-ups over {LATE_US / 1000:g} ms late, worst {worst_us / 1000:.1f} ms"
+        late, worst_us = late_wake_ups()
+        cyclictest = f"cyclictest: {late} wake-ups more than {LATE_US / 1000:g} ms late, worst {worst_us / 1000:.1f} ms"
     except runs.RunFailed:
-        late, witness = 0, "no witness: FIFO is not permitted"
-    yield bool(tracked), f"{len(clearances)} lives of the simulator, {len(tracked)} tracked, all killed"
+        late, cyclictest = 0, "no cyclictest: FIFO is not permitted"
+    yield bool(tracked), f"{len(clearances)} runs of the simulator, all killed; tracking began in {len(tracked)}"
     yield min(tracked, default=-1.0) > 0, f"least clearance {min(tracked, default=math.nan):.4f} m"
     yield grown_kb <= MOST_GROWTH_KB, f"memory {last_kb / 1024:.1f} MB, grown by {grown_kb:.0f} kB"
-    yield loop.skipped == 0 or late > 0, f"{loop.cycles} cycles, {loop.skipped} left out; {witness}"
-    yield loop.cpu_worst_us < LATE_US or late > 0, f"wake-up p99 {loop.wake_up.p99_us:.0f} us, worst CPU time {loop.cpu_worst_us:.0f} us"
-    yield replay.returncode == 0, f"newest blackbox log: {(replay.stdout + replay.stderr).strip() or 'there is none'}"
+    yield loop.skipped == 0 or late > 0, f"{loop.cycles} cycles, {loop.skipped} skipped; {cyclictest}"
+    yield loop.cpu_worst_us < LATE_US or late > 0, (f"wake-up p99 {loop.wake_up.p99_us:.0f} us, "
+                                                    f"worst CPU time {loop.cpu_worst_us:.0f} us")
+    yield replay.returncode == 0, f"newest blackbox log: {(replay.stdout + replay.stderr).strip() or 'none'}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=float, default=3600, metavar="S", help="default %(default)s")
-    parser.add_argument("--seed", type=int, default=1, help="of worlds and kills (default %(default)s)")
+    parser.add_argument("--duration", type=float, default=3600, metavar="S", help="duration (default %(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random choices (default %(default)s)")
     arguments = parser.parse_args()
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     print(f"soak: {arguments.duration:g} s; logs in {runs.shown(FOLDER)}", flush=True)
-    lines = list(judge(*soak(arguments.duration, random.Random(arguments.seed))))
-    for good, text in lines:
-        print(f"  {'ok' if good else 'BROKEN':6}  {text}")
-    return 0 if all(good for good, _ in lines) else 1
+    lines = list(checks(*soak(arguments.duration, random.Random(arguments.seed))))
+    for passed, text in lines:
+        print(f"  {'ok' if passed else 'BROKEN':6}  {text}")
+    return 0 if all(passed for passed, _ in lines) else 1
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Run the real-time loop beside cyclictest, first as the machine is, then with a busy loop on every CPU.
+"""Compare the wake-up latency of the control loop with that of cyclictest, on the idle and on the busy machine.
 
-Both have the same period and FIFO priority and run side by side, on a bus of their own. Goal: the loop's p99 at most
-1.5 times cyclictest's in the same run, and no cycle left out.
+Controller and cyclictest run at the same time with the same period and FIFO priority; the second run adds an endless
+loop for every CPU. Goal: the loop's p99 is at most 1.5 times that of cyclictest in the same run, and no cycle is
+skipped.
 """
 import argparse
 import time
@@ -17,7 +18,7 @@ FOLDER = runs.RECORDS / "timing"
 
 
 def scenario_of(duration_s):
-    """Simulation B of the paper, for as long as wanted."""
+    """Simulation B of the paper, prolonged to the duration."""
     scenario = runs.load_scenario(runs.ROOT / "host/scenarios/paper-b.yaml")
     scenario.update(duration_s=duration_s, robot={**scenario["robot"], "urdf": str(runs.ROOT / "urdf/lwa3.urdf")})
     file = FOLDER / "scenario.yaml"
@@ -26,7 +27,7 @@ def scenario_of(duration_s):
 
 
 def measure(name, duration_s, rate_hz, stressed):
-    """(Loop, Latency of cyclictest or None) of one run."""
+    """One run. Returns (Loop, Latency of cyclictest, or None if FIFO is not permitted to it)."""
     logs = {part: FOLDER / f"{name}-{part}.log" for part in ("controller", "sim", "cyclictest")}
     files = {part: open(log, "w") for part, log in logs.items()}
     url, scenario, processes = runs.private_url(), scenario_of(duration_s + 5), []
@@ -52,33 +53,34 @@ def measure(name, duration_s, rate_hz, stressed):
     return latency.loop_of(logs["controller"]), latency.cyclictest_of(logs["cyclictest"]) if cyclictest else None
 
 
-def line(name, who, latencies, skipped=""):
-    return (f"{name:16} {who:10} {latencies.p50_us:9.0f} {latencies.p99_us:9.0f} {latencies.p999_us:9.0f} "
-            f"{latencies.worst_us:9.0f}  {skipped}")
+def line(name, process, latencies, remark=""):
+    return (f"{name:16} {process:10} {latencies.p50_us:9.0f} {latencies.p99_us:9.0f} {latencies.p999_us:9.0f} "
+            f"{latencies.worst_us:9.0f}  {remark}")
 
 
 def show(name, loop, cyclictest):
-    print(line(name, "loop", loop.wake_up, f"{loop.skipped} of {loop.cycles + loop.skipped} cycles left out"))
+    print(line(name, "loop", loop.wake_up, f"{loop.skipped} of {loop.cycles + loop.skipped} cycles skipped"))
     if not cyclictest:
         return
     ratio = loop.wake_up.p99_us / cyclictest.p99_us
     met = ratio <= GOAL and loop.skipped == 0
-    print(line("", "cyclictest", cyclictest, f"p99: {ratio:.2f} times cyclictest's; goal {'met' if met else 'missed'}"),
+    print(line("", "cyclictest", cyclictest, f"p99 ratio: {ratio:.2f}; goal {'met' if met else 'missed'}"),
           flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=int, default=30, metavar="S", help="of each run (default %(default)s)")
-    parser.add_argument("--rate", type=float, default=100, metavar="HZ", help="default %(default)s")
+    parser.add_argument("--duration", type=int, default=30, metavar="S",
+                        help="duration of each run (default %(default)s)")
+    parser.add_argument("--rate", type=float, default=100, metavar="HZ", help="control rate (default %(default)s)")
     arguments = parser.parse_args()
     FOLDER.mkdir(parents=True, exist_ok=True)
     print(f"{'wake-up, us':16} {'':10} {'p50':>9} {'p99':>9} {'p99.9':>9} {'worst':>9}", flush=True)
-    for name, stressed in (("as it is", False), ("CPUs all busy", True)):
-        loop, cyclictest = measure("stressed" if stressed else "plain", arguments.duration, arguments.rate, stressed)
+    for name, stressed in (("idle", False), ("all CPUs busy", True)):
+        loop, cyclictest = measure("busy" if stressed else "idle", arguments.duration, arguments.rate, stressed)
         show(name, loop, cyclictest)
     print("FIFO and locked memory: " + ("permitted" if loop.fifo else "NOT permitted to the loop") +
-          ("" if cyclictest else "; FIFO NOT permitted to cyclictest, so there is nothing to compare with"))
+          ("" if cyclictest else "; FIFO NOT permitted to cyclictest, hence no comparison"))
     return 0
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The paper's law trades distance for accuracy: least distance against final error over a sweep of its gains.
+"""Draw the trade-off of the paper's law between distance and accuracy over a sweep of its gains.
 
-Every run is build/controller --law paper against build/sim in lockstep. The results are kept in
-build/figures/tradeoff.csv under a hash of everything they depend on.
+Every run is build/controller --law paper with build/sim in lockstep. build/figures/tradeoff.csv stores the results with
+a hash of everything that they depend on.
 """
 import argparse
 import csv
@@ -17,8 +17,8 @@ import plots
 import runs
 
 SETS_PER_READING = 75
-CONTACT_M = 0.1  # the radii of obstacle and arm, 0.05 m each
-FLOOR_MM = 0.1
+CONTACT_M = 0.1  # sum of the radii of obstacle and arm, 0.05 m each
+FLOOR_MM = 0.1   # smaller errors are drawn here, because the axis is logarithmic
 READINGS = {"measured": (plots.ORANGE, "o"), "planned": (plots.SKY, "^")}
 SCENARIOS = {name: runs.ROOT / f"host/scenarios/{name}.yaml" for name in ("paper-b", "paper-c")}
 CACHE = runs.FIGURES / "tradeoff.csv"
@@ -28,11 +28,11 @@ COLUMNS = ["key", "scenario", "law", "tool_velocity", "is_start", "least_m", "er
 
 
 def gain_sets(start):
-    """Config sections `paper:`: the starting values and random sets around them, for both readings of V."""
-    random = np.random.default_rng(1)
+    """Configuration sections `paper:` for both readings of V: the start values, and random sets."""
+    generator = np.random.default_rng(1)
 
     def between(low, high):
-        return round(float(np.exp(random.uniform(np.log(low), np.log(high)))), 4)
+        return round(float(np.exp(generator.uniform(np.log(low), np.log(high)))), 4)
 
     sets = [{}]
     while len(sets) < SETS_PER_READING:
@@ -48,13 +48,13 @@ def hash_of(file):
 
 
 def key_of(config, law, files):
-    """Changes with anything the result depends on."""
+    """A hash of everything that the result depends on."""
     parts = [hashlib.sha256(f"{law}\n{config}".encode()).digest(), *map(hash_of, files)]
     return hashlib.sha256(b"".join(parts)).hexdigest()[:24]
 
 
 def jobs():
-    """(row to complete, config text) for every run of the sweep, and Sidestep's own."""
+    """(row without its results, configuration text) for every run of the sweep, and for the run of Sidestep."""
     work = []
     for name, scenario_file in SCENARIOS.items():
         scenario = runs.load_scenario(scenario_file)
@@ -73,7 +73,7 @@ def jobs():
 
 
 def run(row, config):
-    """The row with its least distance and its error at the end."""
+    """Completes a row with the least distance and the error at the end."""
     files = [FOLDER / f"{row['key']}{ending}" for ending in (".yaml", ".csv", ".controller.log", ".sim.log")]
     FOLDER.mkdir(parents=True, exist_ok=True)
     files[0].write_text(config)
@@ -84,7 +84,7 @@ def run(row, config):
 
 
 def results():
-    """Every row of the sweep, from the cache where it is still true."""
+    """Every row of the sweep, from the cache where its key is unchanged."""
     known = {}
     if CACHE.exists():
         with open(CACHE, newline="") as stream:
@@ -95,12 +95,12 @@ def results():
         known[row["key"]] = row
     rows = [known[row["key"]] for row, _ in work]
     CACHE.parent.mkdir(parents=True, exist_ok=True)
-    half_written = CACHE.with_suffix(".new")
-    with open(half_written, "w", newline="") as stream:
+    unfinished = CACHE.with_suffix(".new")
+    with open(unfinished, "w", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS)
         writer.writeheader()
         writer.writerows(rows)
-    half_written.replace(CACHE)
+    unfinished.replace(CACHE)
     return [row | dict(least_m=float(row["least_m"]), error_mm=max(float(row["error_m"]) * 1e3, FLOOR_MM))
             for row in rows]
 
@@ -118,7 +118,7 @@ def plot(axes, name, rows):
         scatter(axes, [row for row in swept if row["is_start"] == "False"], 26, colour, marker,
                 f"paper's law, {reading} V", alpha=0.65, linewidth=0)
         scatter(axes, [row for row in swept if row["is_start"] == "True"], 120, colour, marker,
-                f"paper's law, {reading} V, starting gains", edgecolor=plots.BLACK, zorder=3)
+                f"paper's law, {reading} V, start values", edgecolor=plots.BLACK, zorder=3)
     scatter(axes, [row for row in rows if row["law"] == "sidestep"], 60, plots.BLUE, "D", "Sidestep",
             edgecolor=plots.BLACK, zorder=4)
     axes.scatter(published["axis_distance_m"], max(published.get("final_distance_m", 0) * 1e3, FLOOR_MM), s=200,
@@ -127,12 +127,12 @@ def plot(axes, name, rows):
     axes.annotate("contact", (CONTACT_M, 0.85), xycoords=("data", "axes fraction"), rotation=90, ha="right",
                   va="center", color="0.35")
     axes.set(yscale="log", xlabel="least distance, obstacle centre to arm axis, m",
-             ylabel=f"tool to target at the end, mm (at {FLOOR_MM:g}: that or less)", title=scenario["title"])
+             ylabel=f"tool to target at the end, mm (at {FLOOR_MM:g}: at most that)", title=scenario["title"])
     axes.yaxis.set_major_formatter(lambda value, _position: f"{value:g}")
 
 
 def draw():
-    """Run what is missing and write the figure; its file."""
+    """Do the runs that the cache lacks and draw the figure. Returns its file."""
     rows = results()
     figure, panels = plt.subplots(1, len(SCENARIOS), figsize=(13, 6.2), layout="constrained", sharex=True,
                                   sharey=True)

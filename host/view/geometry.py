@@ -1,23 +1,24 @@
-"""Surface distances from points to obstacles: enough to colour a drawing, not to steer by."""
+"""Surface distances from link shapes to obstacles, sampled: accurate enough to colour a drawing, not for control."""
 import numpy as np
 
 import arm
-from bus import obstacle_t
+from wire import obstacle_t
 
 SAMPLES = 7  # points along the axis of a link's shape
 
 
 def axis_points(shape):
-    """(points N x 3 in the link's frame, radius m) of the capsule that a shape is coloured as."""
+    """(points N x 3 in the link's frame, radius m) of the capsule that approximates the shape."""
     if shape.kind == "box":
-        return shape.place[None], min(shape.size) / 2
+        return shape.position[None], min(shape.size) / 2
     length_m = shape.size[1] if len(shape.size) > 1 else 0.0
-    return shape.place + np.linspace(-length_m / 2, length_m / 2, SAMPLES)[:, None] * shape.turn[:, 2], shape.size[0]
+    along_m = np.linspace(-length_m / 2, length_m / 2, SAMPLES)[:, None]
+    return shape.position + along_m * shape.rotation[:, 2], shape.size[0]
 
 
 def distance_m(obstacle, points):
     """From each of the points (N x 3, base frame) to the obstacle's surface, m; negative inside a sphere or capsule."""
-    local = (points - np.array(obstacle.position)) @ arm.turn_of(obstacle.quaternion)
+    local = (points - np.array(obstacle.position)) @ arm.rotation_of_quaternion(obstacle.quaternion)
     if obstacle.shape == obstacle_t.BOX:
         return np.linalg.norm(np.maximum(np.abs(local) - np.array(obstacle.size) / 2, 0.0), axis=1)
     half_m = obstacle.size[1] / 2 if obstacle.shape == obstacle_t.CAPSULE else 0.0
@@ -25,8 +26,9 @@ def distance_m(obstacle, points):
     return np.linalg.norm(local, axis=1) - obstacle.size[0]
 
 
-def clearance_m(shape, frame, obstacles):
-    """From a link's shape to the nearest obstacle, m; infinity without obstacles."""
+def clearance_m(shape, link_pose, obstacles):
+    """From a link's shape to the nearest obstacle, m; infinity without obstacles. link_pose: position, rotation."""
+    position, rotation = link_pose
     points, radius_m = axis_points(shape)
-    points = points @ frame[1].T + frame[0]
+    points = points @ rotation.T + position
     return min((distance_m(obstacle, points).min() for obstacle in obstacles), default=np.inf) - radius_m

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Play a scenario again and again and show it live in the browser, until Ctrl-C.
+"""Run a scenario repeatedly and show it live in the browser, until Ctrl-C.
 
-Starts Meldis, which serves the page, the publisher of the picture, the controller and the simulator.
+Starts Meldis, which serves the page, view.py, which publishes the drawing, and the controller and the simulator.
 """
 import argparse
 import os
@@ -20,15 +20,15 @@ PAUSE_S = 1.0  # between two runs
 
 @contextmanager
 def viewers(scenario, port, lcm_url=""):
-    """Meldis and the publisher, for as long as the block lasts; Meldis takes its LCM network from the environment."""
-    bus = ["--lcm-url", lcm_url] if lcm_url else []
+    """Meldis and view.py while the block runs. Meldis reads its LCM network from the environment."""
+    network = ["--lcm-url", lcm_url] if lcm_url else []
     view = [ROOT / "host/view/view.py", "--config", *map(runs.config_of, runs.arms_of(scenario))]
     environment = os.environ | ({"LCM_DEFAULT_URL": lcm_url} if lcm_url else {})
     meldis, started = ["-m", "pydrake.visualization.meldis", "--port", port, "--idle-timeout", 0], []
     runs.RECORDS.mkdir(parents=True, exist_ok=True)
     try:
         with open(runs.RECORDS / "view.log", "w") as log:
-            for command in (meldis, view + bus):
+            for command in (meldis, view + network):
                 started.append(subprocess.Popen([sys.executable, *map(str, command)], env=environment, process_group=0,
                                                 stdout=log, stderr=log))
         yield started
@@ -40,11 +40,11 @@ def viewers(scenario, port, lcm_url=""):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path, metavar="SCENARIO.yaml")
-    parser.add_argument("--port", type=int, default=7000, help="of the browser page (default %(default)s)")
+    parser.add_argument("--port", type=int, default=7000, help="port of the browser page (default %(default)s)")
     arguments = parser.parse_args()
     scenario_file = arguments.scenario.absolute()
     scenario = runs.load_scenario(scenario_file)
-    print(f"{scenario['title']}: open http://localhost:{arguments.port} (Ctrl-C stops all)", flush=True)
+    print(f"{scenario['title']}: open http://localhost:{arguments.port} (Ctrl-C ends)", flush=True)
     with viewers(scenario, arguments.port) as started:
         while all(process.poll() is None for process in started):
             runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)

@@ -1,4 +1,4 @@
-"""Drake's simulated iiwa on LCM, and what moves around it."""
+"""Drake's simulated iiwa on LCM, and the target and the obstacles around it."""
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
@@ -20,7 +20,7 @@ LINK_KG, LINK_KGM2 = 3.5, 0.03  # roughly a seventh of the arm each
 
 
 def urdf_with_masses():
-    """The arm as Drake needs it; Sidestep itself knows no dynamics."""
+    """The arm with the masses that Drake needs; Sidestep uses no dynamics."""
     robot = xml.parse(URDF).getroot()
     for link in robot.iter("link"):
         heavy = link.find("collision") is not None
@@ -43,7 +43,7 @@ def add_arm(plant):
 
 
 class Iiwa:
-    """A simulated arm under Drake's own position control, which speaks IIWA_STATUS and hears IIWA_COMMAND."""
+    """A simulated arm with Drake's position control, which sends IIWA_STATUS and receives IIWA_COMMAND."""
 
     def __init__(self, lcm_url):
         builder = DiagramBuilder()
@@ -54,9 +54,9 @@ class Iiwa:
         scene.collision_filter_manager().Apply(CollisionFilterDeclaration().ExcludeWithin(own))
         self._controlled = MultibodyPlant(STEP_S)
         add_arm(self._controlled)
-        bus = DrakeLcm(lcm_url)
-        builder.AddSystem(LcmInterfaceSystem(bus))
-        BuildIiwaControl(builder=builder, lcm=bus, plant=self.plant, iiwa_instance=arm,
+        network = DrakeLcm(lcm_url)
+        builder.AddSystem(LcmInterfaceSystem(network))
+        BuildIiwaControl(builder=builder, lcm=network, plant=self.plant, iiwa_instance=arm,
                          controller_plant=self._controlled, driver_config=IiwaDriver(control_mode="position_only"))
         self.scene = scene
         self.simulator = Simulator(builder.Build())
@@ -75,7 +75,7 @@ class Iiwa:
         return self.plant.GetFrameByName("flange").CalcPoseInWorld(self.context).translation()
 
     def clearance_m(self, centre_m, radius_m):
-        """From a sphere to the arm's collision geometry, by Drake's own distances."""
+        """From a sphere to the arm's collision geometry, measured by Drake."""
         context = self.scene.GetMyContextFromRoot(self.simulator.get_context())
         query = self.scene.get_query_output_port().Eval(context)
         return min(hit.distance for hit in query.ComputeSignedDistanceToPoint(centre_m)) - radius_m
@@ -84,8 +84,8 @@ class Iiwa:
         return self.plant.GetVelocityUpperLimits()
 
 
-class Swing:
-    """A point that swings about a centre, each axis with an amplitude and a period; at rest at time 0."""
+class Oscillation:
+    """A point that oscillates about a centre, each axis with an amplitude and a period; at rest at time 0."""
 
     def __init__(self, centre_m, amplitude_m, period_s):
         self.centre_m, self.amplitude_m = np.array(centre_m), np.array(amplitude_m)
@@ -97,9 +97,9 @@ class Swing:
         return self.centre_m + self.amplitude_m * np.cos(phase), -self.amplitude_m * self.rate_radps * np.sin(phase)
 
 
-TARGET = Swing([0.55, 0, 0.5], [0.08, 0.25, 0.1], [11, 8, 6])
-OBSTACLES = [  # radius_m and how the centre moves
-    (0.08, Swing([0.5, 0, 0.8], [0, 0.9, 0.1], 9)),
-    (0.07, Swing([0.75, 0, 0.4], [0.1, 0.8, 0.1], 11)),
-    (0.08, Swing([0.4, 0.4, 0.7], [0.9, 0, 0.1], 13)),
+TARGET = Oscillation([0.55, 0, 0.5], [0.08, 0.25, 0.1], [11, 8, 6])
+OBSTACLES = [  # radius_m and the motion of the centre
+    (0.08, Oscillation([0.5, 0, 0.8], [0, 0.9, 0.1], 9)),
+    (0.07, Oscillation([0.75, 0, 0.4], [0.1, 0.8, 0.1], 11)),
+    (0.08, Oscillation([0.4, 0.4, 0.7], [0.9, 0, 0.1], 13)),
 ]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Forward kinematics of arm-check against Pinocchio, for arms of example-robot-data and of urdf/, at random postures."""
+"""Compare the forward kinematics of arm-check with Pinocchio, for several arms at random configurations."""
 import argparse
 import os
 import subprocess
@@ -24,7 +24,7 @@ ARMS = [
 
 
 def chain(model, base, tip):
-    """Joints of Pinocchio that move the tip but not the base, base first."""
+    """Pinocchio's indices of the joints from base to tip."""
     parent = lambda frame: model.frames[model.getFrameId(frame)].parentJoint
     of_base = set(model.supports[parent(base)])
     return [joint for joint in model.supports[parent(tip)] if joint not in of_base]
@@ -36,9 +36,9 @@ def poses_of_pinocchio(model, base, tip, postures, joints):
     for posture in postures:
         q = pin.neutral(model)
         for joint, angle in zip(joints, posture):
-            at = model.joints[joint].idx_q
-            # Pinocchio keeps a continuous joint as cosine and sine.
-            q[at:at + model.joints[joint].nq] = [angle] if model.joints[joint].nq == 1 else [np.cos(angle), np.sin(angle)]
+            at, size = model.joints[joint].idx_q, model.joints[joint].nq
+            # Pinocchio represents a continuous joint by cosine and sine.
+            q[at:at + size] = [angle] if size == 1 else [np.cos(angle), np.sin(angle)]
         pin.framesForwardKinematics(model, data, q)
         pose = data.oMf[model.getFrameId(base)].inverse() * data.oMf[model.getFrameId(tip)]
         rows.append([*pose.translation, *pose.rotation.ravel()])
@@ -58,7 +58,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000, help="postures for each arm (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tolerance", type=float, default=1e-9, help="m and without unit (default %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-9,
+                        help="for positions, m, and for rotation matrices (default %(default)s)")
     arguments = parser.parse_args()
     random, failed = np.random.default_rng(arguments.seed), 0
     for urdf, base, tip in ARMS:
@@ -67,9 +68,9 @@ def main():
         postures = random.uniform(-np.pi, np.pi, (arguments.count, len(joints)))
         ours = poses_of_arm_check(urdf, base, tip, postures)
         gap = np.abs(ours - poses_of_pinocchio(model, base, tip, postures, joints)).max()
-        right = len(ours) == arguments.count and gap <= arguments.tolerance
-        failed += not right
-        print(f"{'ok' if right else 'FAIL':4}  {urdf.name:12} {base} to {tip}, {len(joints)} joints, "
+        passed = len(ours) == arguments.count and gap <= arguments.tolerance
+        failed += not passed
+        print(f"{'ok' if passed else 'FAIL':4}  {urdf.name:12} {base} to {tip}, {len(joints)} joints, "
               f"{arguments.count} postures: largest difference {gap:.1e}")
     print(f"{len(ARMS) - failed} passed, {failed} failed")
     sys.exit(1 if failed else 0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Witnessed scenes (build/campaign) for arms of example-robot-data: no contact in any, by the meshes of their URDF."""
+"""Check that arms of example-robot-data run witnessed scenes (build/campaign) without contact of their meshes."""
 import argparse
 import csv
 import os
@@ -17,7 +17,7 @@ ARMS = {
 
 
 def contacts(arm, arguments):
-    """Plays the scenes of an arm, which prints their table; the names of those in which it touched something."""
+    """Runs the scenes of an arm and prints their table. Returns the names of the scenes with a contact."""
     urdf, base, tip = ARMS[arm]
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv"
@@ -26,7 +26,7 @@ def contacts(arm, arguments):
                         "--quiet"], check=True)
         played = list(csv.DictReader(rows.open()))
     if len(played) != arguments.count:
-        sys.exit(f"{arm}: {len(played)} scenes played")
+        sys.exit(f"{arm}: {len(played)} scenes in the results")
     return [f"{row['family']}:{row['seed']}" for row in played if float(row["clearance_m"]) < 0.0]
 
 
@@ -34,14 +34,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="scenes for each arm (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--family", default="chase", help="default %(default)s: the target moves, too")
+    parser.add_argument("--family", default="chase",
+                        help="family of scenes (default %(default)s: with a moving target)")
     arguments = parser.parse_args()
     failed = 0
     for arm in ARMS:
-        touched = contacts(arm, arguments)
-        failed += bool(touched)
-        print(f"{'FAIL' if touched else 'ok':4}  {arm}: contact in {len(touched)} of {arguments.count} scenes",
-              *touched, flush=True)
+        scenes = contacts(arm, arguments)
+        failed += bool(scenes)
+        print(f"{'FAIL' if scenes else 'ok':4}  {arm}: contact in {len(scenes)} of {arguments.count} scenes",
+              *scenes, flush=True)
     print(f"{len(ARMS) - failed} passed, {failed} failed")
     sys.exit(1 if failed else 0)
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Hold one lockstep step of build/controller --law paper to paper_law.py on random states, over LCM.
+"""Compare lockstep cycles of build/controller --law paper over LCM with paper_law.py, on random states.
 
-Limits are set wide, so that the arm may be anywhere from one cycle to the next. Exit code 0: all within 1e-6 rad/s.
+The limits are so wide that the state may change arbitrarily between cycles. Exit code 0: all differences are within
+1e-6 rad/s.
 """
 import csv
 import io
@@ -22,7 +23,7 @@ from sidestep import controller_status_t, joint_command_t, joint_state_t, obstac
 TOLERANCE_RADPS = 1e-6
 PERIOD_US = 10_000
 CYCLES_TO_TRACK = 60
-# Every state is one of its own: what was there before does not count.
+# The states are independent of each other, hence no limits and no obstacle memory (coast_s).
 WIDE = {"velocity_radps": 1e5, "acceleration_radps2": 1e8, "lower_rad": -1e6, "upper_rad": 1e6}
 
 
@@ -31,7 +32,7 @@ def numbers(row):
 
 
 def cases(seed, count):
-    """Random states without the memory that the `planned` reading of V has, as dictionaries of numbers."""
+    """Random states as dictionaries of numbers, without those of the `planned` reading of V, which has a memory."""
     command = [sys.executable, ROOT / "tests/support/paper_law.py", "cases", "--seed", str(seed), "--count", str(count)]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     return [row for row in map(numbers, csv.DictReader(io.StringIO(text))) if row["planned"] == 0]
@@ -59,27 +60,27 @@ def messages(row, utime):
     return {"TARGET": target, "OBSTACLES": obstacles, "ARM_STATE": arm}
 
 
-def ask(wire, answers, row, utime):
-    """One cycle; returns the commanded joint velocity."""
-    answers.clear()
+def step(network, replies, row, utime):
+    """Runs one cycle and returns the commanded joint velocity."""
+    replies.clear()
     for channel, message in messages(row, utime).items():
-        wire.publish(channel, message.encode())
+        network.publish(channel, message.encode())
     end = time.monotonic() + 5.0
-    while "CONTROLLER_STATUS" not in answers:
-        wire.handle_timeout(100)
+    while "CONTROLLER_STATUS" not in replies:
+        network.handle_timeout(100)
         if time.monotonic() > end:
-            sys.exit("law_over_lcm: the controller does not answer")
-    return np.array(joint_command_t.decode(answers["ARM_COMMAND"]).joint_velocity)
+            sys.exit("law_over_lcm: no reply from the controller")
+    return np.array(joint_command_t.decode(replies["ARM_COMMAND"]).joint_velocity)
 
 
-def compare(wire, rows):
-    answers, utime, worst = {}, PERIOD_US, 0.0
-    wire.subscribe("ARM_COMMAND|CONTROLLER_STATUS", answers.__setitem__)
+def compare(network, rows):
+    replies, utime, worst = {}, PERIOD_US, 0.0
+    network.subscribe("ARM_COMMAND|CONTROLLER_STATUS", replies.__setitem__)
     for row in [rows[0]] * CYCLES_TO_TRACK + rows:
         utime += PERIOD_US
-        velocity = ask(wire, answers, row, utime)
+        velocity = step(network, replies, row, utime)
         if utime > (CYCLES_TO_TRACK + 1) * PERIOD_US:
-            mode = controller_status_t.decode(answers["CONTROLLER_STATUS"]).mode
+            mode = controller_status_t.decode(replies["CONTROLLER_STATUS"]).mode
             if mode != controller_status_t.TRACK:
                 sys.exit(f"law_over_lcm: mode {mode} instead of TRACK")
             worst = max(worst, np.abs(velocity - values(row, "expect_qd", range(1, 8))).max())
@@ -87,7 +88,8 @@ def compare(wire, rows):
 
 
 def main():
-    config = yaml.safe_load((ROOT / "firmware/config/lwa3.yaml").read_text()) | {"limits": WIDE, "timeouts": {"coast_s": 0}}
+    config = yaml.safe_load((ROOT / "firmware/config/lwa3.yaml").read_text())
+    config |= {"limits": WIDE, "timeouts": {"coast_s": 0}}
     rows, url = cases(seed=77, count=400), sys.argv[1]
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
         yaml.safe_dump(config, file)

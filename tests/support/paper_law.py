@@ -1,25 +1,27 @@
-#!/ usr / bin / env python3
-"""The paper's law for the LWA3 in NumPy, written from the law's description alone: a second opinion on the C++.
+#!/usr/bin/env python3
+"""The paper's law for the LWA3 in NumPy, an independent reference for the C++, written from the paper notes alone.
 
-  paper_law.py table                        the paper's three simulations, by reading of V in X = V + F T
+  paper_law.py table                        the paper's three simulations, for each reading of V in X = V + F T
   paper_law.py simulate paper-c --csv FILE  one simulation with an ideal plant, in the columns of build/sim --csv
-  paper_law.py cases --seed 1 --count 500   states and the joint velocity the law must answer with, as CSV
+  paper_law.py cases --seed 1 --count 500   random states with the joint velocity that the law must compute, as CSV
 
-Columns of `cases`, one header line, SI units, base frame (numbers but for the last):
+"Item" refers to the items of the paper notes.
+
+Columns of `cases`, one header line, SI units, base frame; all but the last are numbers:
   q1..q7, qd1..qd7                   measured joint position and velocity
   target_x..z, target_vx..vz         position and velocity of the target
-  tracks_orientation                 1: the task is 6-D, target_q* and target_w* count;
-0 : position only target_qw..qz,
-    target_wx..wz orientation(w x y z) and angular velocity of the target planned 1 : V of item 4 is planned_v; 0: V is the measured tool velocity
+  tracks_orientation                 1: the task is 6-D, target_q* and target_w* apply; 0: position only
+  target_qw..qz, target_wx..wz       orientation (w x y z) and angular velocity of the target
+  planned                            1: V of item 4 is planned_v; 0: V is the measured tool velocity
   planned_vx..vz                     X of the previous cycle (zero when not planned)
-  obstacles                          0 to 4, how many of the following count (the rest are zero)
+  obstacles                          0 to 4, number of obstacles (the columns of the others are zero)
   o1_x..z, o1_vx..vz, .. o4_vz       centre and velocity of each obstacle
   expect_qd1..expect_qd7             the law's joint velocity before any joint limit (item 9)
   expect_vx..vz                      X of item 4, clipped to v_max
   expect_beta, expect_damping        beta of item 8 and lambda of item 5
   expect_axis_distance               d_0 of item 7, -1 without obstacles
-  kind                               a word for what makes the state hard
-The parameters are PARAMETERS, the starting values of the config section `paper:`.
+  kind                               what makes the state difficult, one of KINDS
+The parameters are PARAMETERS, the start values of the configuration section `paper:`.
 """
 import argparse
 import csv
@@ -33,7 +35,7 @@ ALPHA_RAD = np.deg2rad([0, 90, -90, 90, -90, 90, -90])
 OFFSET_M = [0.300, 0, 0.328, 0, 0.2765, 0, 0]
 TOOL_M = 0.3372
 RADII_M = 0.05 + 0.05  # obstacle and arm
-RANK_TOLERANCE = 1e-6  # of the largest singular value; `cases` keeps away from it
+RANK_TOLERANCE = 1e-6  # relative to the largest singular value; `cases` excludes states near it
 
 PARAMETERS = dict(k_pos_per_s2=20.0, k_vel_per_s=8.94, k_rpos_m2ps2=0.5, k_rvel_m2ps2=0.1, rho_0_m=0.25, rho_v_m=0.25,
                   rho_min_m=0.02, v_max_mps=1.0, lambda_0=0.08, sigma_0=0.08, lambda_n=0.05, x_m_mps=0.5, d_m_m=0.3,
@@ -55,10 +57,12 @@ SCENARIOS = {
                     target=dict(position_m=[0.1, 0.4, 0.8], velocity_mps=[0.2, 0, 0]),
                     published=dict(axis_distance_m=0.1711, final_distance_m=0.001)),
 }
-#The arm
 
-def forward(q_rad):
-    """Craig D-H. Returns (axes 7x3, origins 7x3, tool point 3, tool rotation 3x3), base frame."""
+
+# The arm
+
+def forward_kinematics(q_rad):
+    """By Craig's D-H convention. Returns (axes 7x3, origins 7x3, tool point 3, tool rotation 3x3), base frame."""
     pose, axes, origins = np.eye(4), [], []
     for alpha, offset, q in zip(ALPHA_RAD, OFFSET_M, q_rad):
         c, s, ca, sa = np.cos(q), np.sin(q), np.cos(alpha), np.sin(alpha)
@@ -70,7 +74,7 @@ def forward(q_rad):
 
 
 def jacobian(arm, point, joints=7):
-    """3x7: velocity of `point`, fixed to the link behind joint number `joints`."""
+    """3x7: Jacobian of a point on the link that follows joint number `joints`."""
     axes, origins = arm[:2]
     columns = np.zeros((3, 7))
     columns[:, :joints] = np.cross(axes[:joints], point - origins[:joints]).T
@@ -78,7 +82,7 @@ def jacobian(arm, point, joints=7):
 
 
 def moving_segments(arm):
-    """(start, end, joints that move it) of upper arm, forearm and tool: the base column does not move."""
+    """(start, end, number of joints that move it) of upper arm, forearm and tool; the base column does not move."""
     origins, tool = arm[1], arm[2]
     return [(origins[0], origins[2], 3), (origins[2], origins[4], 5), (origins[4], tool, 7)]
 
@@ -89,10 +93,11 @@ def nearest_on(segment, point):
 
 
 def axis_distances(arm, obstacles):
-    """One list per obstacle: distance of its centre to the axis of each moving segment, m."""
+    """For each obstacle: the distances, m, of its centre to the axes of the moving segments."""
     return [[np.linalg.norm(nearest_on(s, o["p"]) - o["p"]) for s in moving_segments(arm)] for o in obstacles]
 
-#The law.Obstacles are dicts of p, v; a target is p, v and, when the orientation counts, quaternion and w.
+
+# The law. Obstacles are dicts of p, v; a target is p, v and, if the orientation is tracked, quaternion and w.
 
 def attraction(target, tool, v_tool, k):                                                            # item 1
     return k["k_pos_per_s2"] * (target["p"] - tool) + k["k_vel_per_s"] * (target["v"] - v_tool)
@@ -146,25 +151,25 @@ def rotation_vector(rotation):
 
 
 def law(q_rad, qd_radps, target, obstacles, k, planned_v=None):
-    """Joint velocity of item 9 before any limit, and a dict of what it was made of."""
-    arm = forward(q_rad)
+    """Joint velocity of item 9 before any limit, and a dict of intermediate terms."""
+    arm = forward_kinematics(q_rad)
     tool = arm[2]
     task = jacobian(arm, tool)
     v_tool = task @ qd_radps
     force = attraction(target, tool, v_tool, k) + sum((repulsion(o, tool, v_tool, k) for o in obstacles), np.zeros(3))
     x = (v_tool if planned_v is None else planned_v) + force * PERIOD_S                             # item 4
     x *= min(1.0, k["v_max_mps"] / max(np.linalg.norm(x), 1e-300))
-    wish = x
+    nominal = x
     if "quaternion" in target:
-        turn = rotation_vector(rotation_of(target["quaternion"]) @ arm[3].T)
+        rotation_error = rotation_vector(rotation_of(target["quaternion"]) @ arm[3].T)
         task = np.vstack([task, arm[0].T])
-        wish = np.concatenate([x, target["w"] + k["k_ori_per_s"] * turn])
+        nominal = np.concatenate([x, target["w"] + k["k_ori_per_s"] * rotation_error])
 
     squared = damping_squared(task, k)
-    tracking = damped_inverse(task, squared) @ wish
-    facts = dict(x=x, beta=0.0, damping=np.sqrt(squared), d_0=-1.0, tool=tool)
+    tracking = damped_inverse(task, squared) @ nominal
+    terms = dict(x=x, beta=0.0, damping=np.sqrt(squared), d_0=-1.0, tool=tool)
     if not obstacles:
-        return tracking, facts
+        return tracking, terms
     d_0, a_0, centre, joints = min(((np.linalg.norm(a - o["p"]), a, o["p"], s[2]) for o in obstacles       # item 7
                                     for s in moving_segments(arm) for a in [nearest_on(s, o["p"])]),
                                    key=lambda candidate: candidate[0])
@@ -172,20 +177,21 @@ def law(q_rad, qd_radps, target, obstacles, k, planned_v=None):
     null_space = np.eye(7) - np.linalg.pinv(task, rcond=RANK_TOLERANCE) @ task                      # item 6
     j_0, beta = jacobian(arm, a_0, joints), beta_of(d_0, k)
     deviation = damped_inverse(j_0 @ null_space, k["lambda_n"] ** 2) @ (x_0 - j_0 @ tracking)
-    facts.update(beta=beta, d_0=d_0)
-    return (1 - beta) * tracking + beta * deviation, facts                                          # item 9
+    terms.update(beta=beta, d_0=d_0)
+    return (1 - beta) * tracking + beta * deviation, terms                                          # item 9
 
 
 def limited(qd_radps, q_rad, previous_radps, limits):
-    """Item 10: one scale for velocity, then acceleration joint by joint, then room to stop before a position limit."""
+    """Item 10: one scale factor for the velocity limit, then acceleration limit and braking distance per joint."""
     top, step = limits["velocity_radps"], limits["acceleration_radps2"] * PERIOD_S
     qd = qd_radps * min(1.0, top / max(np.max(np.abs(qd_radps)), 1e-300))
     qd = np.clip(qd, previous_radps - step, previous_radps + step)
-    room = np.maximum([q_rad - limits["lower_rad"], limits["upper_rad"] - q_rad], 0)
-    down, up = np.minimum(np.sqrt(2 * limits["acceleration_radps2"] * room), room / PERIOD_S)
+    distance = np.maximum([q_rad - limits["lower_rad"], limits["upper_rad"] - q_rad], 0)
+    down, up = np.minimum(np.sqrt(2 * limits["acceleration_radps2"] * distance), distance / PERIOD_S)
     return np.clip(qd, -down, up)
 
-#Simulation with an ideal plant
+
+# Simulation with an ideal plant
 
 def columns_of(obstacle_count):
     """The header of build/sim --csv."""
@@ -200,25 +206,25 @@ def columns_of(obstacle_count):
 
 def simulate(scenario, k=PARAMETERS, limits=LIMITS):
     """(column names, rows): a row per cycle from t = 0 to the duration inclusive, in the columns of build/sim --csv."""
-    goal, *things = ((np.array(thing["position_m"], float), np.array(thing.get("velocity_mps", [0, 0, 0]), float))
-                     for thing in [scenario["target"], *scenario["obstacles"]])
+    goal, *spheres = ((np.array(body["position_m"], float), np.array(body.get("velocity_mps", [0, 0, 0]), float))
+                      for body in [scenario["target"], *scenario["obstacles"]])
     q, qd, planned_v, rows = np.array(scenario.get("start_rad", HOME_RAD), float), np.zeros(7), None, []
     for step in range(round(scenario["duration_s"] / PERIOD_S) + 1):
         t = step * PERIOD_S
         target = dict(p=goal[0] + goal[1] * t, v=goal[1])
-        obstacles = [dict(p=p + v * t, v=v) for p, v in things]
-        wish, facts = law(q, qd, target, obstacles, k, planned_v)
-        command = limited(wish, q, qd, limits)
-        distances = [min(d) for d in axis_distances(forward(q), obstacles)]
+        obstacles = [dict(p=p + v * t, v=v) for p, v in spheres]
+        nominal, terms = law(q, qd, target, obstacles, k, planned_v)
+        command = limited(nominal, q, qd, limits)
+        distances = [min(d) for d in axis_distances(forward_kinematics(q), obstacles)]
         least = min(distances, default=np.inf)
-        row = [t, *q, *qd, *command, *facts["tool"], *target["p"], np.linalg.norm(target["p"] - facts["tool"]),
+        row = [t, *q, *qd, *command, *terms["tool"], *target["p"], np.linalg.norm(target["p"] - terms["tool"]),
                least - RADII_M, least]
         for obstacle, distance in zip(obstacles, distances):
             row += [*obstacle["p"], distance, distance - RADII_M]
-        rows.append([*row, 2, 0.0, facts["beta"], facts["damping"]])
+        rows.append([*row, 2, 0.0, terms["beta"], terms["damping"]])
         q, qd = q + command * PERIOD_S, command
-        planned_v = facts["x"] if k["tool_velocity"] == "planned" else None
-    return columns_of(len(things)), rows
+        planned_v = terms["x"] if k["tool_velocity"] == "planned" else None
+    return columns_of(len(spheres)), rows
 
 
 def table():
@@ -227,8 +233,7 @@ def table():
     print("| | A, error at 2.3 s | B, least distance; error at 8 s | C, least distance; error at 2.8 s |")
     print("|---|---|---|---|")
     for name, changes in readings:
-        error_m, least_m = {}, {
-}
+        error_m, least_m = {}, {}
         for key, scenario in SCENARIOS.items():
             names, rows = simulate(scenario, PARAMETERS | changes)
             error_m[key] = rows[-1][names.index("target_distance_m")]
@@ -237,7 +242,8 @@ def table():
               f"| {least_m['paper-b']:.4f} m; {error_m['paper-b'] * 1e3:.3f} mm "
               f"| {least_m['paper-c']:.4f} m; {error_m['paper-c'] * 1e3:.2f} mm |")
 
-#Random states for the C++ to be held to
+
+# Random states for the check of the C++
 
 KINDS = ["anywhere", "home", "near home", "stretched", "nearly stretched", "upright", "obstacle at link",
          "obstacle at tool", "obstacle on tool", "fast", "planned", "orientation", "orientation at home",
@@ -250,7 +256,7 @@ def random_unit(random, size=3):
 
 
 def draw(random, kind):
-    """One state of that kind: (q, qd, target, obstacles, planned V or None)."""
+    """A random state of a kind: (q, qd, target, obstacles, planned V or None)."""
     q = random.uniform(-0.8, 0.8, 7) * LIMITS["upper_rad"]
     qd = random.uniform(-1, 1, 7) * (2.0 if kind == "fast" else 0.5)
     if "home" in kind:
@@ -260,7 +266,7 @@ def draw(random, kind):
         q[[3, 5]] = random.choice([-1, 1], 2) * random.uniform(1e-3, 0.03, 2) if kind == "nearly stretched" else 0
     if kind == "upright":
         q[[1, 3, 5]] = 0
-    arm = forward(q)
+    arm = forward_kinematics(q)
     far = 3.0 if kind == "far target" else 0.4
     target = dict(p=arm[2] + random_unit(random) * random.uniform(0, far),
                   v=random_unit(random) * random.uniform(0, 0.3))
@@ -273,16 +279,16 @@ def draw(random, kind):
               "crossing d_1": (0.1, 0.32)}.get(kind)
     if near_m:
         segment = moving_segments(arm)[random.integers(0, 3)]
-        place = arm[2] if "tool" in kind else segment[0] + random.random() * (segment[1] - segment[0])
-        p = place + random_unit(random) * random.uniform(*near_m)
+        point = arm[2] if "tool" in kind else segment[0] + random.random() * (segment[1] - segment[0])
+        p = point + random_unit(random) * random.uniform(*near_m)
         obstacles = [dict(p=p, v=random_unit(random) * random.uniform(0, 1)), *obstacles[:3]]
     planned_v = random_unit(random) * random.uniform(0, 1.2) if kind == "planned" else None
     return q, qd, target, obstacles, planned_v
 
 
 def well_defined(q, qd, target, obstacles):
-    """False where two answers are equally right: a tie for the nearest point, or a singular value at a threshold."""
-    arm = forward(q)
+    """False if two results are equally correct: a tie for the nearest point, or a singular value at a threshold."""
+    arm = forward_kinematics(q)
     task = jacobian(arm, arm[2])
     if "quaternion" in target:
         if np.linalg.norm(rotation_vector(rotation_of(target["quaternion"]) @ arm[3].T)) > np.pi - 0.05:
@@ -291,7 +297,7 @@ def well_defined(q, qd, target, obstacles):
     values = np.linalg.svd(task, compute_uv=False)
     if np.any((values > 1e-9 * values[0]) & (values < 1e-4 * values[0])):
         return False
-    for d in axis_distances(arm, obstacles):  # the elbow and the wrist belong to two links each
+    for d in axis_distances(arm, obstacles):  # elbow and wrist each belong to two links, which makes a tie
         if any(abs(a - b) < 1e-6 for i, a in enumerate(d) for b in d[:i]):
             return False
     least = sorted(min(d) for d in axis_distances(arm, obstacles))
@@ -302,13 +308,13 @@ def well_defined(q, qd, target, obstacles):
 
 
 def case(q, qd, target, obstacles, planned_v, kind):
-    expected, facts = law(q, qd, target, obstacles, PARAMETERS, planned_v)
+    expected, terms = law(q, qd, target, obstacles, PARAMETERS, planned_v)
     empty = dict(p=np.zeros(3), v=np.zeros(3))
     padded = [*obstacles, *[empty] * (4 - len(obstacles))]
     return [*q, *qd, *target["p"], *target["v"], int("quaternion" in target), *target.get("quaternion", [1, 0, 0, 0]),
             *target.get("w", [0, 0, 0]), int(planned_v is not None), *(np.zeros(3) if planned_v is None else planned_v),
             len(obstacles), *(number for o in padded for part in (o["p"], o["v"]) for number in part),
-            *expected, *facts["x"], facts["beta"], facts["damping"], facts["d_0"], kind]
+            *expected, *terms["x"], terms["beta"], terms["damping"], terms["d_0"], kind]
 
 
 def case_columns():
@@ -322,7 +328,7 @@ def case_columns():
 
 
 def cases(seed, count):
-    """Rows of `count` states, every kind in turn, the same for the same seed."""
+    """`count` rows, the kinds in turn. Equal seeds give equal rows."""
     random = np.random.default_rng(seed)
     rows = []
     while len(rows) < count:
@@ -347,7 +353,7 @@ def main():
     one.add_argument("scenario", choices=SCENARIOS)
     one.add_argument("--tool-velocity", choices=["measured", "planned"], default="measured")
     one.add_argument("--csv", type=argparse.FileType("w"), default=sys.stdout, metavar="FILE")
-    some = commands.add_parser("cases", help="print random states and the law's answers")
+    some = commands.add_parser("cases", help="print random states and the joint velocities of the law")
     some.add_argument("--seed", type=int, default=1)
     some.add_argument("--count", type=int, default=500)
     arguments = parser.parse_args()

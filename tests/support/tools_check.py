@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks of the scripts in host/tools; a wrong one ends with an assertion."""
+"""Checks of the scripts in host/tools and host/view; a failed check ends with an assertion."""
 import argparse
 import contextlib
 import io
@@ -19,7 +19,6 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "host/tools"), str(ROOT / "host/view"), str(ROOT / "build/lcm/python")]
 import arm
-import bus
 import crowds
 import geometry
 import record
@@ -27,35 +26,36 @@ import report
 import runs
 import send_obstacles
 import send_target
-import side
 import view
+import wire
+from arm_view import ArmView
 
 STEP_S = 1e-4
 LWA3 = (ROOT / "urdf/lwa3.urdf", "base_link", "tool")
 
 
-def slope(place_at, t):
-    return (np.array(place_at(t + STEP_S)) - np.array(place_at(t - STEP_S))) / (2 * STEP_S)
+def slope(position_at, t):
+    return (np.array(position_at(t + STEP_S)) - np.array(position_at(t - STEP_S))) / (2 * STEP_S)
 
 
 def velocities():
-    """What is sent as a velocity is the slope of what is sent as a position, for targets and obstacles."""
-    moves = [send_target.line([0, 1, 2], [0.1, -0.2, 0.3]), send_target.circle([0, 0, 1], 0.3, 5),
+    """The sent velocities of targets and obstacles are the derivatives of the sent positions."""
+    motions = [send_target.line([0, 1, 2], [0.1, -0.2, 0.3]), send_target.circle([0, 0, 1], 0.3, 5),
              send_target.figure_eight([0, 0, 1], 0.3, 5)]
-    for move in moves:
+    for motion in motions:
         for t in (0.0, 1.3, 4.9):
-            assert np.allclose(slope(lambda s: move(s)[0], t), move(t)[1], atol=1e-6), (move, t)
+            assert np.allclose(slope(lambda s: motion(s)[0], t), motion(t)[1], atol=1e-6), (motion, t)
     crowd_kinds = [crowds.straight([[0, 0, 0, 0.1, 1, 2, 3]]), crowds.wandering(4, 7), crowds.walking()]
     for crowd in crowd_kinds:
         for i, obstacle in enumerate(crowd(1.7)):
             assert np.allclose(slope(lambda s: crowd(s)[i].position, 1.7), obstacle.velocity, atol=1e-6), (crowd, i)
-            turns = [arm.turn_of(crowd(1.7 + side * STEP_S)[i].quaternion)[:, 2] for side in (-1, 1)]
-            now = arm.turn_of(obstacle.quaternion)[:, 2]
-            assert np.allclose((turns[1] - turns[0]) / (2 * STEP_S), np.cross(obstacle.angular_velocity, now), atol=1e-6)
+            axis_rate = slope(lambda s: arm.rotation_of_quaternion(crowd(s)[i].quaternion)[:, 2], 1.7)
+            axis = arm.rotation_of_quaternion(obstacle.quaternion)[:, 2]
+            assert np.allclose(axis_rate, np.cross(obstacle.angular_velocity, axis), atol=1e-6)
 
 
 def tracks():
-    """Spheres from a CSV file run straight from row to row and then rest."""
+    """Spheres of a CSV file move on straight lines from row to row and then rest."""
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
         file.write("t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,0.1\n2,4,0.9,0,0,0.1\n")
         file.flush()
@@ -66,54 +66,53 @@ def tracks():
 
 
 def clearances():
-    """A drawing's clearance is that of the LWA3 stretched upwards beside a sphere, a capsule and a box."""
-    frames = arm.frames(arm.chain(*LWA3), [0.0] * 7)
+    """The clearance that colours a drawing is correct for the upright LWA3 and a sphere, a capsule and a box."""
+    link_poses = arm.link_poses(arm.chain(*LWA3), [0.0] * 7)
     shapes = arm.shapes(*LWA3)
-    thing = crowds.obstacle
     for shape, size, expected in ((0, [0.1], 0.35), (1, [0.1, 1.0], 0.35), (2, [0.4, 0.4, 2.0], 0.25)):
-        obstacle = thing(1, shape, size, [0.5, 0, 0.5], [0, 0, 0])
-        nearest = min(geometry.clearance_m(one, frames[one.frame], [obstacle]) for one in shapes)
+        obstacle = crowds.obstacle(1, shape, size, [0.5, 0, 0.5], [0, 0, 0])
+        nearest = min(geometry.clearance_m(one, link_poses[one.frame], [obstacle]) for one in shapes)
         assert math.isclose(nearest, expected, abs_tol=5e-3), (shape, nearest)
 
 
 def quaternions():
-    """A rotation survives the way to a quaternion and back."""
-    chance = np.random.default_rng(1)
+    """A rotation converted to a quaternion and back is unchanged."""
+    generator = np.random.default_rng(1)
     for _ in range(100):
-        turn = arm.turn_of(chance.normal(size=4))
-        assert np.allclose(arm.turn_of(arm.quaternion_of(turn)), turn)
+        rotation = arm.rotation_of_quaternion(generator.normal(size=4))
+        assert np.allclose(arm.rotation_of_quaternion(arm.quaternion_of(rotation)), rotation)
 
 
 def places():
-    """What one of two arms, its base turned by half a turn, hears in its own frame is drawn in that of both."""
+    """Obstacles that an arm with a rotated base receives in its own frame are drawn in the common world frame."""
     config = ROOT / "firmware/config/left.yaml"
-    left = side.Side(config, LWA3)
+    left = ArmView(config, LWA3)
     kinds = left.channels()
     assert kinds["LEFT_TARGET"] == "TARGET" and kinds["RIGHT_LINKS"] == "OBSTACLES", kinds
     bar = crowds.obstacle(1, 1, [0.1, 0.5], [0.3, 0.2, 0.7], [0, 1, 0])
-    bar.quaternion = arm.quaternion_of(arm.turn_of_z(np.array([1.0, 0, 0])))
-    seen = left.in_world(bar)
-    assert np.allclose(seen.position, [-0.8, -0.2, 0.7]) and np.allclose(seen.velocity, [0, -1, 0]), seen.position
-    assert np.allclose(np.abs(arm.turn_of(seen.quaternion)[:, 2]), [1, 0, 0])
+    bar.quaternion = arm.quaternion_of(arm.rotation_from_z(np.array([1.0, 0, 0])))
+    drawn = left.in_world(bar)
+    assert np.allclose(drawn.position, [-0.8, -0.2, 0.7]) and np.allclose(drawn.velocity, [0, -1, 0]), drawn.position
+    assert np.allclose(np.abs(arm.rotation_of_quaternion(drawn.quaternion)[:, 2]), [1, 0, 0])
 
 
 def surroundings():
     """The table and the wall of a configuration are drawn."""
-    table, wall = side.Side(ROOT / "firmware/config/table.yaml", LWA3).surroundings
+    table, wall = ArmView(ROOT / "firmware/config/table.yaml", LWA3).surroundings
     assert (table.id, table.shape, wall.id) == (-2, 2, -3) and list(wall.size) == [0.05, 2.5, 2.0]
     assert np.allclose(table.position, [-0.8, 0, 0.35])
     assert math.isclose(geometry.distance_m(table, np.array([[-0.8, 0, 0.47]]))[0], 0.1)
 
 
 def logged_run(folder):
-    """The log that the simulator keeps of a lockstep run of paper-a, and how long the run was."""
+    """Runs paper-a in lockstep. Returns the simulator's log and the duration of the run."""
     log, scenario_file = folder / "run.lcmlog", ROOT / "host/scenarios/paper-a.yaml"
     runs.execute(scenario_file, "sidestep", folder / "run.csv", lcm_url=runs.private_url(), log=log)
     return log, runs.load_scenario(scenario_file)["duration_s"]
 
 
 def log_becomes_page():
-    """A log turns into one page that holds the run and asks the network for nothing."""
+    """A log becomes one page that contains the run and loads nothing from the network."""
     with tempfile.TemporaryDirectory() as name:
         log, duration_s = logged_run(Path(name))
         data = report.data_of(log, LWA3)
@@ -124,44 +123,44 @@ def log_becomes_page():
 
 
 def log_replays():
-    """What lcm-logplayer plays of a log, record.py hears: the same messages."""
+    """record.py records the messages that lcm-logplayer plays from a log."""
     url = runs.private_url()
     with tempfile.TemporaryDirectory() as name:
         log, _ = logged_run(Path(name))
-        again = Path(name) / "again.lcmlog"
-        recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", again, "--lcm-url", url],
+        copy = Path(name) / "copy.lcmlog"
+        recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", copy, "--lcm-url", url],
                                     stdout=subprocess.DEVNULL)
         time.sleep(1.0)
         subprocess.run(["lcm-logplayer", "--lcm-url", url, log], check=True, timeout=60, stdout=subprocess.DEVNULL)
         time.sleep(0.5)
         recorder.send_signal(signal.SIGINT)
         assert recorder.wait(10) == 0
-        played, heard = ([rows for _, rows in report.samples(file)] for file in (log, again))
-    assert len(heard) > 0.95 * len(played), (len(heard), len(played))
-    assert heard[-1]["ARM_STATE"].joint_position == played[-1]["ARM_STATE"].joint_position
+        played, recorded = ([rows for _, rows in report.samples(file)] for file in (log, copy))
+    assert len(recorded) > 0.95 * len(played), (len(recorded), len(played))
+    assert recorded[-1]["ARM_STATE"].joint_position == played[-1]["ARM_STATE"].joint_position
 
 
 def sent(script, *words):
-    """What a script that is called so sends at first."""
-    heard = []
-    with mock.patch.multiple(script, send=lambda motion, _url: heard.append(motion(0.0))), \
+    """The first value that a script with these arguments sends."""
+    values = []
+    with mock.patch.multiple(script, send=lambda motion, _url: values.append(motion(0.0))), \
             mock.patch.object(sys, "argv", ["", *words]):
         script.main()
-    return heard[0]
+    return values[0]
 
 
 def refusal(script, *words):
-    """Exit code and last line of a script that is called so."""
-    said = io.StringIO()
-    with contextlib.redirect_stderr(said), mock.patch.multiple(sys, argv=["", *map(str, words)], stdin=io.StringIO()):
+    """Exit code and last line of error output of a script with these arguments."""
+    errors = io.StringIO()
+    with contextlib.redirect_stderr(errors), mock.patch.multiple(sys, argv=["", *map(str, words)], stdin=io.StringIO()):
         try:
             script.main()
         except SystemExit as end:
-            return (1, end.code) if isinstance(end.code, str) else (end.code, said.getvalue().splitlines()[-1])
+            return (1, end.code) if isinstance(end.code, str) else (end.code, errors.getvalue().splitlines()[-1])
 
 
 def coordinates():
-    """Numbers with a minus, with an exponent, among options and after -- arrive as they were typed."""
+    """Numbers are parsed correctly with a minus sign, with an exponent, among options and after `--`."""
     for words in (("-0.3,0,1,.1",), ("--", "-0.3,0,1,.1"), ("--seed", "-2", "-3e-1,0,1,.1")):
         (sphere,) = sent(send_obstacles, *words)
         assert sphere.position == [-0.3, 0, 1] and sphere.size[0] == 0.1, (words, sphere.position)
@@ -171,7 +170,7 @@ def coordinates():
 
 
 def refusals():
-    """What cannot be done is refused in one line with a reason, and nothing is sent instead."""
+    """A script rejects wrong arguments and files with one line that has the reason, and sends nothing."""
     with tempfile.TemporaryDirectory() as name:
         rows = Path(name) / "rows.csv"
         rows.write_text(f"t_s,id,x_m,y_m,z_m,radius_m\n0,4,0.5,0,0,0.1\n0,{2**31},0.5,0,0,0.1\n")
@@ -187,8 +186,8 @@ def refusals():
         nonsense.write_text("a: b: c\n")
         for script, words, code, reason in (
                 (send_obstacles, ["--random", "-3"], 2, "-3 is below 0"),
-                (send_obstacles, ["--random", "2", "1,0,1,.1"], 2, "spheres do not go together"),
-                (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres do not go together"),
+                (send_obstacles, ["--random", "2", "1,0,1,.1"], 2, "spheres cannot be combined"),
+                (send_obstacles, ["1,0,1,.1", "--person"], 2, "spheres cannot be combined"),
                 (send_obstacles, ["--csv", ""], 2, "No such file"),
                 (send_obstacles, ["--csv", rows], 2, f"{rows}, line 3: id {2**31}"),
                 (send_obstacles, ["0,0,1,-0.1"], 2, "radius -0.1 is below 0"),
@@ -197,27 +196,27 @@ def refusals():
                 (send_obstacles, ["--csv", thin], 2, f"{thin}, line 2: radius -1 is below 0"),
                 (send_obstacles, ["--csv", no_rows], 2, f"{no_rows}: no rows"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
-                (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "listen to '('"),
+                (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "subscribe to '('"),
                 (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),
                 (report, [log, "--config", no_robot], 1, "robot has no urdf"),
                 (report, [log, "--urdf", nonsense], 1, f"{nonsense}: syntax error"),
                 (view, ["--config", "/nonexistent"], 1, "No such file"),
                 (view, ["--config", nonsense], 1, f"{nonsense}: mapping")):
-            said = refusal(script, *words)
-            assert said[0] == code and reason in said[1] and "\n" not in said[1], (words, said)
+            result = refusal(script, *words)
+            assert result[0] == code and reason in result[1] and "\n" not in result[1], (words, result)
         assert log.read_text() == "old"
         robot = dict(urdf="arm.urdf", base="base", tip="tool")
         assert arm.robot_of(no_robot, argparse.Namespace(**robot)) == tuple(robot.values())
 
 
 def hostile_bytes():
-    """What is not a message of its channel is nothing, whatever it is."""
-    chance = random.Random(1)
-    for channel, kind in bus.TYPES.items():
+    """Bytes that are not a message of the channel's type raise no exception."""
+    generator = random.Random(1)
+    for channel, kind in wire.TYPES.items():
         whole = kind().encode()
-        for data in (b"", whole[:-1], b"\0" * 40, whole[:8] + chance.randbytes(60)):
-            bus.decoded(channel, data)
-        assert bus.decoded(channel, whole) is not None
+        for data in (b"", whole[:-1], b"\0" * 40, whole[:8] + generator.randbytes(60)):
+            wire.decoded(channel, data)
+        assert wire.decoded(channel, whole) is not None
 
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Show a run in headless Chromium through Meldis and look whether arm, obstacles and target are in the picture."""
+"""Show a run in headless Chromium through Meldis and check that the picture contains arm, obstacles and target."""
 import argparse
 import io
 import subprocess
@@ -18,7 +18,7 @@ import runs
 import show
 
 PORT = 7070
-FRAME = (300, 120, 760, 520)  # of the picture that is kept
+FRAME = (300, 120, 760, 520)  # px, the section of the screenshot that is saved
 CAMERA_M = [0.75, 1.0, 1.2]  # x, y up, z towards the viewer: the browser's axes
 LOOK_AT_M = [0.05, 0.6, 0.0]
 LEAST_PIXELS = {"arm": 4000, "obstacles": 1500, "target": 60}
@@ -36,7 +36,7 @@ def browser():
 
 
 def aim(page):
-    """The camera to where the arm is seen, and the page's own controls and grid out of the way."""
+    """Points the camera at the arm and hides the page's controls and grid."""
     for path, name, value in ((["Cameras", "default", "rotated", "<object>"], "position", CAMERA_M),
                               (["Grid"], "visible", False), (["Axes"], "visible", False)):
         page.execute_script("viewer.set_property(...arguments)", path, name, value)
@@ -46,25 +46,25 @@ def aim(page):
 
 
 def pixels(image):
-    """Counts of clearly coloured pixels by what has that hue."""
+    """The number of saturated pixels in the hues of each object."""
     hue, saturation, value = np.moveaxis(np.array(image.convert("HSV"), float), 2, 0)
     clear, degrees = (saturation > 100) & (value > 60), hue * 360 / 255
-    return {what: int(sum((clear & (degrees > low) & (degrees < high)).sum() for low, high in ranges))
-            for what, ranges in HUES_DEG.items()}
+    return {name: int(sum((clear & (degrees > low) & (degrees < high)).sum() for low, high in ranges))
+            for name, ranges in HUES_DEG.items()}
 
 
 def photograph(page, limit_s=40):
-    """The first picture with everything in it, or the last one before the limit; and its counts."""
+    """(screenshot, pixel counts) of the first complete picture, or of the last one before the limit."""
     deadline = time.monotonic() + limit_s
     while True:
         image = Image.open(io.BytesIO(page.get_screenshot_as_png())).convert("RGB")
         counts = pixels(image)
-        if all(counts[what] >= least for what, least in LEAST_PIXELS.items()) or time.monotonic() > deadline:
+        if all(counts[name] >= least for name, least in LEAST_PIXELS.items()) or time.monotonic() > deadline:
             return image, counts
 
 
 def open_page(page, limit_s=30):
-    """Meldis takes some seconds to serve its page."""
+    """Opens the page. Meldis needs some seconds until it serves it."""
     deadline = time.monotonic() + limit_s
     while True:
         try:
@@ -74,7 +74,7 @@ def open_page(page, limit_s=30):
         except WebDriverException:
             pass
         if time.monotonic() > deadline:
-            raise runs.RunFailed("Meldis does not serve its page")
+            raise runs.RunFailed("Meldis serves no page")
         time.sleep(0.5)
 
 
@@ -83,16 +83,16 @@ def main():
     parser.add_argument("-o", "--output", type=Path, default=runs.FIGURES / "view.png")
     output = parser.parse_args().output
     scenario_file, url = ROOT / "host/scenarios/paper-c.yaml", runs.private_url()
-    bus = ["--lcm-url", url]
+    network = ["--lcm-url", url]
     with show.viewers(runs.load_scenario(scenario_file), PORT, url):
         page = browser()
         try:
             open_page(page)
             aim(page)
             empty = pixels(Image.open(io.BytesIO(page.get_screenshot_as_png())))
-            programs = [runs.start([runs.BUILD / "controller", "--config", "firmware/config/lwa3.yaml", *bus],
+            programs = [runs.start([runs.BUILD / "controller", "--config", "firmware/config/lwa3.yaml", *network],
                                    subprocess.DEVNULL),
-                        runs.start([runs.BUILD / "sim", "--scenario", scenario_file, "--quiet", *bus],
+                        runs.start([runs.BUILD / "sim", "--scenario", scenario_file, "--quiet", *network],
                                    subprocess.DEVNULL)]
             try:
                 image, counts = photograph(page)
@@ -104,9 +104,10 @@ def main():
     output.parent.mkdir(parents=True, exist_ok=True)
     image.crop(FRAME).save(output, optimize=True)
     print(f"pixels before: {empty}; in {runs.shown(output.absolute())}: {counts}")
-    seen = all(empty[what] < least <= counts[what] for what, least in LEAST_PIXELS.items())
-    print("view: everything is in the picture" if seen else "view: something is missing, or was there before the run")
-    return 0 if seen else 1
+    passed = all(empty[name] < least <= counts[name] for name, least in LEAST_PIXELS.items())
+    print("view: arm, obstacles and target are in the picture" if passed
+          else "view: arm, obstacles or target are missing, or were in the picture before the run")
+    return 0 if passed else 1
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-// A closed loop in one process: the controller, an arm that follows it at once, a moving target and three obstacles.
+// A closed loop in one process: the controller, an arm that follows its commands without delay, a moving target and
+// three obstacles.
 #include <sidestep.h>
 
 #include <cstdio>
@@ -11,7 +12,7 @@ namespace {
 
 constexpr int kCycles = 600;
 
-// A sphere that crosses the way, a post and a shelf.
+// A sphere that crosses the tool's path, a post and a shelf.
 std::vector<Controller::Obstacle> world_at(double t_s) {
   Controller::Obstacle sphere, post, shelf;
   sphere.id = 1;

@@ -1,0 +1,93 @@
+"""LCM for the scripts: Sidestep's channels, their message types, and the latest message of each channel."""
+import math
+import re
+import select
+import struct
+import sys
+import time
+from pathlib import Path
+
+import lcm
+
+# Appended, so that pydrake's own modules come first. Installed scripts find the types in their own folder.
+sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
+from sidestep import controller_status_t, joint_command_t, joint_state_t, obstacle_t, obstacles_t, target_t
+
+TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,
+         "CONTROLLER_STATUS": controller_status_t}
+MODES = {getattr(controller_status_t, name): name for name in ("WAIT", "HOLD", "TRACK", "BRAKE", "FAULT")}
+
+
+def decoded(kind, data):
+    """The message of type TYPES[kind], or None if the bytes are not a message of that type."""
+    try:
+        return TYPES[kind].decode(data)
+    except (ValueError, struct.error, UnicodeDecodeError, MemoryError):
+        return None
+
+
+def connect(lcm_url):
+    """An LCM instance. Without a usable network the script ends with one line and exit code 1."""
+    try:
+        return lcm.LCM(lcm_url)
+    except RuntimeError:
+        sys.exit(f"cannot use the LCM network '{lcm_url or 'default'}' (is there a multicast route?)")
+
+
+def handle_messages(network, limit_s=None):
+    """Waits for a message, up to limit_s or without limit, and handles it."""
+    if select.select([network], [], [], limit_s)[0]:  # Ctrl-C interrupts select(), but not handle()
+        network.handle_timeout(10)  # ms; handle() would block on an incomplete message
+
+
+def publish(channel, message_at, lcm_url):
+    """Publishes message_at(seconds since the start) on a channel, 50 times a second, until Ctrl-C."""
+    network, start = connect(lcm_url), time.time()
+    try:
+        while True:
+            message = message_at(time.time() - start)
+            message.utime = int(time.time() * 1e6)
+            network.publish(channel, message.encode())
+            time.sleep(0.02)
+    except KeyboardInterrupt:
+        pass
+
+
+def finite(text):
+    """The finite number that the text gives; ValueError otherwise."""
+    if not math.isfinite(value := float(text)):
+        raise ValueError(f"{text} is not a finite number")
+    return value
+
+
+def command_line():
+    """The arguments for argparse. A leading blank stops argparse from reading -1e-3 and -1,0,2 as options."""
+    return [f" {word}" if re.match(r"-[\d.]", word) else word for word in sys.argv[1:]]
+
+
+class LatestMessages(dict):
+    """Channel -> latest valid message. A channel without a message yet is missing.
+
+    channels: a list of keys of TYPES, or a dict from channel name to key of TYPES.
+    """
+
+    def __init__(self, channels, lcm_url):
+        super().__init__()
+        self.network = connect(lcm_url)
+        self.kinds = channels if isinstance(channels, dict) else {channel: channel for channel in channels}
+        for channel in self.kinds:
+            self.network.subscribe(channel, self._store)
+
+    def _store(self, channel, data):
+        if (message := decoded(self.kinds[channel], data)) is not None:
+            self[channel] = message
+
+    def receive(self, duration_s):
+        end = time.monotonic() + duration_s
+        while (left_s := end - time.monotonic()) > 0:
+            handle_messages(self.network, left_s)
+
+
+def add_lcm_url(parser):
+    parser.add_argument("--lcm-url", default="", metavar="URL",
+                        help="LCM network (default: LCM_DEFAULT_URL, else LCM's default)")

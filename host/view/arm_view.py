@@ -1,0 +1,75 @@
+"""One arm of the view: its configuration and its messages, transformed to the world frame that the arms share."""
+import copy
+
+import numpy as np
+
+import arm
+import runs
+import scene
+from wire import obstacle_t
+
+KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "CONTROLLER_STATUS"]  # the messages that the view shows
+SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
+          "box": (obstacle_t.BOX, [])}
+
+
+def static_obstacle(settings, number):
+    """An entry of `surroundings` as obstacle_t, with the negative id that controller_status_t uses for it."""
+    obstacle = obstacle_t()
+    obstacle.id, (obstacle.shape, keys) = number, SHAPES[settings["shape"]]
+    obstacle.size = settings["edges_m"] if not keys else [*(settings[key] for key in keys), 0.0, 0.0][:3]
+    obstacle.position, obstacle.quaternion = settings["position_m"], settings.get("quaternion", [1, 0, 0, 0])
+    return obstacle
+
+
+class ArmView:
+    """robot: (URDF, base, tip). name: prefix of all names in the viewer. latest: wire.LatestMessages of channels()."""
+
+    def __init__(self, config, robot, name=""):
+        settings = runs.load(config)
+        neighbours = settings.get("neighbours") or {}
+        self.name = name
+        self.chain, self.shapes = arm.chain(*robot), arm.shapes(*robot)
+        self.names = {kind: (settings.get("channels") or {}).get(kind.lower(), kind) for kind in KINDS}
+        self.neighbours = neighbours.get("listen") or []
+        self.position = np.array(neighbours.get("base_position_m", [0, 0, 0]), float)  # of the base, world frame
+        self.rotation = arm.rotation_of_rpy(*neighbours.get("base_rpy_rad", [0, 0, 0]))
+        self.surroundings = [self.in_world(static_obstacle(entry, -2 - i))
+                             for i, entry in enumerate(settings.get("surroundings") or [])]
+
+    def channels(self):
+        """Channel name -> key of wire.TYPES."""
+        return {name: kind for kind, name in self.names.items()} | dict.fromkeys(self.neighbours, "OBSTACLES")
+
+    def point(self, position):
+        return self.position + self.rotation @ np.array(position)
+
+    def in_world(self, obstacle):
+        result = copy.copy(obstacle)
+        result.position, result.velocity = self.point(obstacle.position), self.rotation @ np.array(obstacle.velocity)
+        result.quaternion = arm.quaternion_of(self.rotation @ arm.rotation_of_quaternion(obstacle.quaternion))
+        return result
+
+    def obstacles(self, latest):
+        message = latest.get(self.names["OBSTACLES"])
+        obstacles = message.obstacles if message else []
+        return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in scene.OBSTACLE_KINDS]
+
+    def links_of_others(self, latest):
+        return [link for name in self.neighbours if name in latest for link in latest[name].obstacles]
+
+    def link_poses(self, latest):
+        """The link poses, the tool last; None before the first arm state."""
+        state = latest.get(self.names["ARM_STATE"])
+        if state is None or state.num_joints != sum(axis is not None for _, _, axis in self.chain):
+            return None
+        return [(self.point(position), self.rotation @ rotation)
+                for position, rotation in arm.link_poses(self.chain, state.joint_position)]
+
+    def target(self, latest):
+        message = latest.get(self.names["TARGET"])
+        return self.point(message.position) if message else None
+
+    def guide(self, latest):
+        status = latest.get(self.names["CONTROLLER_STATUS"])
+        return [self.point(point) for point in status.guide_tool] if status and status.guide_horizon > 0 else []
