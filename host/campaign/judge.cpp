@@ -74,9 +74,9 @@ void Judge::measure_tool_error(const ArmPose& arm, double t_s) {
   if (error_m < kArrived_m) ++on_target_;
   squares_m2_ += error_m * error_m;
   metrics_.error_max_m = std::fmax(metrics_.error_max_m, error_m);
-  const Matrix3 wanted =
+  const Matrix3 reference =
       scene_.family->full_pose ? orientation_target_at(scene_, t_s)->orientation.toRotationMatrix() : start_rotation_;
-  const double turn_rad = Eigen::AngleAxisd(arm.tool_rotation * wanted.transpose()).angle();
+  const double turn_rad = Eigen::AngleAxisd(arm.tool_rotation * reference.transpose()).angle();
   squares_rad2_ += turn_rad * turn_rad;
 }
 

@@ -6,7 +6,7 @@
 namespace sidestep::campaign {
 namespace {
 
-// Fixed here, whatever the configuration: plain tracking decides which scenes the benchmark has.
+// Independent of the configuration, because plain tracking decides which scenes the benchmark has.
 constexpr double kPosition_per_s2 = 20.0, kVelocity_per_s = 8.94, kLargestSpeed_mps = 1.0;
 constexpr double kLambda = 0.08, kSigma = 0.08;  // largest damping factor; least singular value below which it acts
 

@@ -41,7 +41,7 @@ double arrived_within_m(const Family& family);
 Joints witness_rad(const Scene& scene, double t_s);
 Joints witness_radps(const Scene& scene, double t_s);
 
-/// Target of the tool's position. It is the one of t = 0 before t = 0.
+/// Target of the tool's position, base frame. Before t = 0 it rests where it is at t = 0.
 PointMotion target_at(const Scene& scene, double t_s);
 
 /// Target of the tool's orientation and angular velocity, base frame.

@@ -17,7 +17,7 @@ namespace {
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 constexpr double kRest_s = 5.0, kLongest_s = 12.0;  // time after the witness's motion; longest scene
 constexpr int kMostWitnesses = 100'000;             // draws until a witness is short enough
-constexpr int kMostAttempts = 1'000;                // to make a scene; the published benchmark needed up to 83
+constexpr int kMostAttempts = 1'000;                // to make a scene; the LWA3's scenes needed up to 83
 constexpr int kMostDraws = 20'000;                  // of a posture, or of spheres before another witness is drawn
 
 /// Draws a posture within a share of the joints' range, high enough above the floor.

@@ -7,7 +7,7 @@ namespace sidestep::campaign {
 
 using Vector3 = Eigen::Vector3d;
 
-/// Base frame.
+/// Position and velocity of a point, base frame.
 struct PointMotion {
   Vector3 position_m;
   Vector3 velocity_mps;

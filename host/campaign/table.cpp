@@ -12,29 +12,29 @@ namespace sidestep::campaign {
 namespace {
 
 using Value = double TrialMetrics::*;
-using Figure = std::function<double(const Sample&)>;
+using Statistic = std::function<double(const Sample&)>;
 
-Figure share(bool (*holds)(const Row&)) {
+Statistic share(bool (*holds)(const Row&)) {
   return [=](const Sample& sample) { return percent(sample, holds); };
 }
 
-Figure average(Value value, double unit = 1.0) {
+Statistic average(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return mean(sample, value) / unit; };
 }
 
-Figure average_success(Value value) {
+Statistic average_success(Value value) {
   return [=](const Sample& sample) { return mean(successes(sample), value); };
 }
 
-Figure over_witness(Value value, Value of_witness) {
+Statistic over_witness(Value value, Value of_witness) {
   return [=](const Sample& sample) { return ratio(sample, value, of_witness); };
 }
 
-Figure maximum(Value value, double unit = 1.0) {
+Statistic maximum(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return largest(sample, value) / unit; };
 }
 
-Figure minimum(Value value, double unit = 1.0) {
+Statistic minimum(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return least(sample, value) / unit; };
 }
 
@@ -43,7 +43,7 @@ struct Column {
   const char* title;
   const char* unit;
   int digits;
-  Figure figure;
+  Statistic statistic;
 };
 
 using Columns = std::vector<Column>;
@@ -117,7 +117,7 @@ Line line_of(const Sample& sample, const Columns& columns) {
   const Row &first = sample.front(), &last = sample.back();
   Line line{first.law, first.family->name, fmt::format("{}", sample.size()),
             fmt::format("{}..{}", first.seed, last.seed)};
-  for (const Column& column : columns) line.push_back(number(column.figure(sample), column.digits));
+  for (const Column& column : columns) line.push_back(number(column.statistic(sample), column.digits));
   return line;
 }
 

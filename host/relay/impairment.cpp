@@ -67,7 +67,7 @@ bool Impairment::draw(double share, int64_t& count) {
   return drawn;
 }
 
-/// Changes up to 8 bytes; in one third of the messages each it also cuts off the end or appends bytes.
+/// Changes up to 8 bytes. Before that one third of the messages lose their end, and another third get bytes appended.
 void Impairment::corrupt(std::vector<uint8_t>& bytes) {
   const auto below = [this](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random_); };
   const size_t kind = below(3);

@@ -17,7 +17,8 @@ struct BaselineCycle {
   void run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m);
 };
 
-/// Distance only: the same, but of the distances only the least one to the spheres. Not enough to keep clear.
+/// Distance only: the same with the least distance to the spheres instead of all pairs. A controller could not keep
+/// clear with it.
 struct DistanceOnlyCycle {
   double nearest_m;
   JointVector velocity_radps;

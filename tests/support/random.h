@@ -36,7 +36,7 @@ class Random {
     for (int i = 0; i < count; ++i) v[i] = uniform(lower, upper);
     return v;
   }
-  /// A random configuration within this share of the position limits, for a joint without limits of +-pi.
+  /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi.
   JointVector poses(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {
