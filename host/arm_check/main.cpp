@@ -29,7 +29,7 @@ void print_joints(const Arm& arm) {
     fmt::print("  {:<24} {:>9.4g} {:>9.4g} {:>8.4g} {:>8.3g}\n", arm.joint_names[static_cast<size_t>(i)],
                arm.limits.lower_rad[i], arm.limits.upper_rad[i], arm.limits.velocity_radps[i],
                arm.joint_placement[static_cast<size_t>(i) + 1].translation().norm());
-  fmt::print("  (rad, rad, rad/s, m from the joint before)\n");
+  fmt::print("  (rad, rad, rad/s; reach: distance from the joint before, m)\n");
 }
 
 void print_shapes(const Arm& arm) {
@@ -41,7 +41,7 @@ void print_shapes(const Arm& arm) {
     fmt::print("  {:<24} {:>5} {:>8.4f} {:>8.4f} {:>8}\n", shape.link, shape.body, capsule.radius_m,
                (capsule.end - capsule.start).norm(), slack);
   }
-  fmt::print("  (m; slack: how far the capsules of a mesh stand out from it at most)\n");
+  fmt::print("  (m; slack: largest distance from a mesh to the surface of its capsules)\n");
 }
 
 std::vector<std::string> odd_joints(const Arm& arm) {
@@ -49,7 +49,7 @@ std::vector<std::string> odd_joints(const Arm& arm) {
   for (int i = 0; i < arm.joints; ++i) {
     const std::string& name = arm.joint_names[static_cast<size_t>(i)];
     const double range_rad = arm.limits.upper_rad[i] - arm.limits.lower_rad[i];
-    if (std::isinf(range_rad)) odd.push_back(fmt::format("joint '{}' is continuous: it has no end", name));
+    if (std::isinf(range_rad)) odd.push_back(fmt::format("joint '{}' is continuous: it has no position limits", name));
     if (range_rad < 0.1) odd.push_back(fmt::format("joint '{}' can only move {:.3g} rad", name, range_rad));
     if (arm.limits.velocity_radps[i] > 10.0)
       odd.push_back(fmt::format("joint '{}' may turn at {:.3g} rad/s", name, arm.limits.velocity_radps[i]));
@@ -59,7 +59,7 @@ std::vector<std::string> odd_joints(const Arm& arm) {
   return odd;
 }
 
-/// Capsules that stand out far from their mesh, tiny shapes, and links that touch as built.
+/// Capsules much larger than their mesh, tiny shapes, and links that overlap by design.
 std::vector<std::string> odd_shapes(const Arm& arm) {
   std::vector<std::string> odd;
   std::map<std::string, double> large;
@@ -71,16 +71,16 @@ std::vector<std::string> odd_shapes(const Arm& arm) {
   }
   for (const auto& [link, slack_m] : large)
     odd.push_back(
-        fmt::format("link '{}': its capsules stand out {:.3f} m from the mesh; try --capsules-per-mesh 4 "
+        fmt::format("link '{}': its capsules extend {:.3f} m beyond the mesh; try --capsules-per-mesh 4 "
                     "(robot.capsules_per_mesh in a configuration)",
                     link, slack_m));
   for (const auto& [a, b] : find_overlaps(arm, ShieldSettings{}.self_clearance_m))
-    odd.push_back(fmt::format("links '{}' and '{}' overlap as they are built: they are not kept apart",
+    odd.push_back(fmt::format("links '{}' and '{}' overlap by design: they are not kept apart",
                               arm.shapes[static_cast<size_t>(a)].link, arm.shapes[static_cast<size_t>(b)].link));
   return odd;
 }
 
-/// For every line of n joint positions on standard input the pose of the tip: x y z, then the rotation by rows.
+/// Prints the pose of the tip (x y z, then the rotation by rows) for every line of joint positions on standard input.
 void print_poses(const Arm& arm) {
   JointVector q_rad(arm.joints);
   std::string line, more;
@@ -102,13 +102,13 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("urdf", arguments.urdf, "robot description")->required();
   app.add_option("--base", arguments.base, "base link")->required();
   app.add_option("--tip", arguments.tip, "tip link, the tool")->required();
-  app.add_option("--package-path", arguments.meshes.package_path, "folder in which package:// is looked for first")
+  app.add_option("--package-path", arguments.meshes.package_path, "folder that is searched first for package://")
       ->allow_extra_args(false);
   app.add_option("--capsules-per-mesh", arguments.meshes.capsules_per_mesh, "most capsules for one mesh (default 3)")
       ->check(CLI::Range(1, 8));
   app.add_flag("--fk", arguments.forward_kinematics,
                "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
-  app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse it.");
+  app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse the arm.");
 }
 
 int run(const Arguments& arguments) {
@@ -132,8 +132,7 @@ int run(const Arguments& arguments) {
 }  // namespace sidestep
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Shows what the controller makes of a URDF: joints, limits, the capsules around the links, what is odd."};
+  CLI::App app{"Shows how the controller reads a URDF: joints, limits, the capsules around the links, and oddities."};
   sidestep::Arguments arguments;
   sidestep::describe(app, arguments);
   try {

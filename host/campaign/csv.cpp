@@ -14,29 +14,29 @@ namespace {
 
 struct Column {
   const char* name;
-  double Outcome::*value;
+  double TrialMetrics::*value;
 };
 
 constexpr std::array<Column, 19> kColumns{{
-    {"obstacles", &Outcome::obstacles},
-    {"duration_s", &Outcome::duration_s},
-    {"clearance_m", &Outcome::clearance_m},
-    {"final_error_m", &Outcome::final_error_m},
-    {"arrival_s", &Outcome::arrival_s},
-    {"witness_arrival_s", &Outcome::witness_arrival_s},
-    {"path_rad", &Outcome::path_rad},
-    {"witness_path_rad", &Outcome::witness_path_rad},
-    {"error_rms_m", &Outcome::error_rms_m},
-    {"error_max_m", &Outcome::error_max_m},
-    {"on_target_share", &Outcome::on_target_share},
-    {"turn_rms_rad", &Outcome::turn_rms_rad},
-    {"limit_margin_rad", &Outcome::limit_margin_rad},
-    {"speed_radps", &Outcome::speed_radps},
-    {"acceleration_radps2", &Outcome::acceleration_radps2},
-    {"jerk_radps3", &Outcome::jerk_radps3},
-    {"chatter_per_s", &Outcome::chatter_per_s},
-    {"cpu_mean_s", &Outcome::cpu_mean_s},
-    {"cpu_worst_s", &Outcome::cpu_worst_s},
+    {"obstacles", &TrialMetrics::obstacles},
+    {"duration_s", &TrialMetrics::duration_s},
+    {"clearance_m", &TrialMetrics::clearance_m},
+    {"final_error_m", &TrialMetrics::final_error_m},
+    {"arrival_s", &TrialMetrics::arrival_s},
+    {"witness_arrival_s", &TrialMetrics::witness_arrival_s},
+    {"path_rad", &TrialMetrics::path_rad},
+    {"witness_path_rad", &TrialMetrics::witness_path_rad},
+    {"error_rms_m", &TrialMetrics::error_rms_m},
+    {"error_max_m", &TrialMetrics::error_max_m},
+    {"on_target_share", &TrialMetrics::on_target_share},
+    {"turn_rms_rad", &TrialMetrics::turn_rms_rad},
+    {"limit_margin_rad", &TrialMetrics::limit_margin_rad},
+    {"speed_radps", &TrialMetrics::speed_radps},
+    {"acceleration_radps2", &TrialMetrics::acceleration_radps2},
+    {"jerk_radps3", &TrialMetrics::jerk_radps3},
+    {"chatter_per_s", &TrialMetrics::chatter_per_s},
+    {"cpu_mean_s", &TrialMetrics::cpu_mean_s},
+    {"cpu_worst_s", &TrialMetrics::cpu_worst_s},
 }};
 
 std::string header() {
@@ -66,9 +66,9 @@ Number to_number(const std::string& text) {
 Row to_row(const std::string& line) {
   const std::vector<std::string> cells = split(line);
   if (cells.size() != kColumns.size() + 3)
-    throw std::runtime_error(fmt::format("{} values, must be {}", cells.size(), kColumns.size() + 3));
+    throw std::runtime_error(fmt::format("{} values instead of {}", cells.size(), kColumns.size() + 3));
   Row row{&family_named(cells[0]), cells[1], to_number<uint64_t>(cells[2]), {}};
-  for (size_t i = 0; i < kColumns.size(); ++i) row.outcome.*kColumns[i].value = to_number<double>(cells[i + 3]);
+  for (size_t i = 0; i < kColumns.size(); ++i) row.metrics.*kColumns[i].value = to_number<double>(cells[i + 3]);
   return row;
 }
 
@@ -83,7 +83,7 @@ void write_csv(const std::string& file, const std::vector<Row>& rows) {
   stream << header() << '\n';
   for (const Row& row : rows) {
     stream << fmt::format("{},{},{}", row.family->name, row.law, row.seed);
-    for (const Column& column : kColumns) stream << fmt::format(",{}", row.outcome.*column.value);
+    for (const Column& column : kColumns) stream << fmt::format(",{}", row.metrics.*column.value);
     stream << '\n';
   }
   stream.close();
@@ -94,7 +94,7 @@ std::vector<Row> read_csv(const std::string& file) {
   std::ifstream stream(file);
   std::string line;
   if (!stream || !std::getline(stream, line)) throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  if (line != header()) throw std::runtime_error(fmt::format("{}: not a table of campaign trials", file));
+  if (line != header()) throw std::runtime_error(fmt::format("{}: not a CSV file of campaign trials", file));
   std::vector<Row> rows;
   for (int number = 2; std::getline(stream, line); ++number) {
     try {
@@ -108,10 +108,11 @@ std::vector<Row> read_csv(const std::string& file) {
 
 void sort_rows(std::vector<Row>& rows) {
   std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return key(a) < key(b); });
-  const auto twin =
+  const auto duplicate =
       std::adjacent_find(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return key(a) == key(b); });
-  if (twin != rows.end())
-    throw std::runtime_error(fmt::format("{}:{} with law {} stands twice", twin->family->name, twin->seed, twin->law));
+  if (duplicate != rows.end())
+    throw std::runtime_error(
+        fmt::format("{}:{} with law {} occurs twice", duplicate->family->name, duplicate->seed, duplicate->law));
 }
 
 }  // namespace sidestep::campaign

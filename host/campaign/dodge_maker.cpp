@@ -7,21 +7,22 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kRunUp_m = 0.9, kWayOn_m = 2.0;
+constexpr double kRunUp_m = 0.9, kAfterCrossing_m = 2.0;  // length of a line before and after its crossing point
 constexpr double kColumnDistance_m = 0.25;
 constexpr double kStartClearance_m = 0.05;
 constexpr double kReturn_s = 2.0;
 constexpr int kMostDraws = 10'000;
 
-/// Start and direction of a sphere's line.
+/// Draws start and direction of a sphere's line. Returns false if the line is too close to the base column or to the
+/// arm at its start.
 bool draw_line(Random& random, const JudgeArm& arm, const ArmPose& pose, Vector3& start_m, Vector3& direction) {
-  const auto link = static_cast<size_t>(random.whole(1, static_cast<int>(pose.corners.size()) - 2));
+  const auto link = static_cast<size_t>(random.integer(1, static_cast<int>(pose.corners.size()) - 2));
   const double share = random.uniform(0.0, 1.0);
   const Vector3 crossing_m = pose.corners[link] + share * (pose.corners[link + 1] - pose.corners[link]);
   direction = random.direction();
   start_m = crossing_m - kRunUp_m * direction;
-  const NearestPoints nearest =
-      nearest_on_axes({pose.corners[0], pose.corners[1], 0.0}, {start_m, crossing_m + kWayOn_m * direction, 0.0});
+  const NearestPoints nearest = nearest_on_axes({pose.corners[0], pose.corners[1], 0.0},
+                                                {start_m, crossing_m + kAfterCrossing_m * direction, 0.0});
   return (nearest.a - nearest.b).norm() >= kColumnDistance_m &&
          arm.clearance(pose, start_m, kSphereRadius_m) >= kStartClearance_m;
 }

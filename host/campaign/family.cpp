@@ -8,14 +8,14 @@
 namespace sidestep::campaign {
 namespace {
 
-Family plain(const std::string& name, int most_obstacles, double speed_mps) {
+Family basic(const std::string& name, int most_obstacles, double speed_mps) {
   return {name, name, most_obstacles, speed_mps};
 }
 
 std::vector<Family> make_families() {
-  std::vector<Family> all{plain("moving", 6, 0.3),    plain("fast", 6, 0.6),  plain("crowd", 20, 0.3),
-                          plain("clutter", 15, 0.02), plain("chase", 6, 0.3), plain("erratic", 6, 0.4),
-                          plain("real", 6, 0.3)};
+  std::vector<Family> all{basic("moving", 6, 0.3),    basic("fast", 6, 0.6),  basic("crowd", 20, 0.3),
+                          basic("clutter", 15, 0.02), basic("chase", 6, 0.3), basic("erratic", 6, 0.4),
+                          basic("real", 6, 0.3)};
   all[4].chase = true;
   all[5].erratic = true;
   all[6].real = true;
@@ -53,7 +53,7 @@ std::vector<const Family*> families_of(const std::string& word) {
     if (word == "all" || word == family.name || (word == "dodge" && family.dodge)) chosen.push_back(&family);
     known += ", " + family.name;
   }
-  if (chosen.empty()) throw std::runtime_error(fmt::format("no family '{}'; there are {}", word, known));
+  if (chosen.empty()) throw std::runtime_error(fmt::format("no family '{}'; the families are {}", word, known));
   return chosen;
 }
 

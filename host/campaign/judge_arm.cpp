@@ -12,7 +12,7 @@ namespace sidestep::campaign {
 
 namespace {
 
-constexpr double kSame = 1e-6;  // m, rad and what goes with them
+constexpr double kSame = 1e-6;  // m, rad, rad/s, rad/s2
 
 bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() && (a - b).cwiseAbs().maxCoeff() < kSame;
@@ -23,14 +23,15 @@ bool same_limits(const Limits& a, const Limits& b) {
          same(a.acceleration_radps2, b.acceleration_radps2);
 }
 
-/// The capsule from one corner of the benchmark's arm to the next.
+/// Whether the capsule is the link of the benchmark's arm between these two corners.
 bool is_link(const Capsule& capsule, const Vector3& from, const Vector3& to) {
   const bool forth = same(capsule.start, from) && same(capsule.end, to);
   const bool back = same(capsule.start, to) && same(capsule.end, from);
   return (forth || back) && std::abs(capsule.radius_m - kLinkRadius_m) < kSame;
 }
 
-/// In one posture, with every shape, and with the limits of some family.
+/// Whether the arm is the benchmark's: it compares tool position and all shapes at one configuration, and the limits
+/// with those of the families.
 bool is_lwa3(const Arm& arm, const JudgeArm& lwa3) {
   Joints q_rad(7);
   q_rad << 0.3, -0.5, 0.7, 0.9, -1.1, 0.6, 0.2;
@@ -48,7 +49,7 @@ bool is_lwa3(const Arm& arm, const JudgeArm& lwa3) {
 
 std::unique_ptr<JudgeArm> judge_arm_of(const Config& config) {
   if (!config.model.surroundings.empty())
-    throw std::runtime_error("surroundings: the benchmark has none: neither its witness nor its judge knows them");
+    throw std::runtime_error("surroundings: must be empty: the benchmark's witness and judge ignore them");
   auto lwa3 = std::make_unique<Lwa3Arm>();
   if (is_lwa3(config.model.arm, *lwa3)) return lwa3;
   return std::make_unique<UrdfArm>(config);
@@ -61,7 +62,7 @@ ToolJacobian tool_jacobian(const ArmPose& pose) {
   return jacobian;
 }
 
-Vector3 tool_radps(const ArmPose& pose, const Joints& qd_radps) {
+Vector3 tool_angular_velocity(const ArmPose& pose, const Joints& qd_radps) {
   Vector3 turn_radps = Vector3::Zero();
   for (size_t i = 0; i < pose.axes.size(); ++i) turn_radps += qd_radps[static_cast<int>(i)] * pose.axes[i];
   return turn_radps;

@@ -15,62 +15,65 @@ using Joints = sim::JointVector;
 using Limits = JointLimits;
 using ToolJacobian = PointJacobian;
 
-/// An arm at one posture. Base frame, m.
+/// An arm at one configuration. Base frame, m.
 struct ArmPose {
-  std::vector<Vector3> corners;  ///< its skeleton: the foot, where the axes of the joints are, the tool
+  std::vector<Vector3> corners;  ///< polyline of the arm: base, joint origins, tool
   Matrix3 tool_rotation = Matrix3::Identity();
-  std::vector<Vector3> axes;                ///< unit, of each joint
+  std::vector<Vector3> axes;                ///< unit direction of each joint's axis
   std::vector<Vector3> origins;             ///< a point of each joint's axis
-  std::shared_ptr<const sim::Truth> truth;  ///< its surface, unless the corners say it all
-  std::vector<Capsule> capsules;            ///< what the controller takes for it, likewise
+  std::shared_ptr<const sim::Truth> truth;  ///< the arm's surface; null if the corners define it
+  std::vector<Capsule> capsules;            ///< the controller's model of the surface; empty if the corners define it
 
   const Vector3& tool() const { return corners.back(); }
   const Vector3& wrist() const { return corners[corners.size() - 2]; }
 };
 
-/// What the simulator and the controller read to have the same arm.
+/// Where the simulator (urdf, base, tip) and the controller (config) load this arm from.
 struct ArmSource {
   std::string urdf, base, tip, config;
 };
 
-/// An arm as the judge sees it. Where it is and what it touches shares nothing with the controller's model, so that an
-/// error there cannot hide itself. For any number of threads at once.
+/// The judge's model of an arm. Its kinematics and contact computations share nothing with the controller's model, so
+/// that an error in the controller's model shows up as a contact. All functions may be called from several threads.
 class JudgeArm {
  public:
   virtual ~JudgeArm() = default;
 
   virtual ArmPose pose(const Joints& q_rad) const = 0;
 
-  /// Least distance between the arm's surface, links that do not move included, and a sphere's, negative when they
-  /// overlap; within_m when it is not below that.
+  /// Least distance between the surfaces of the arm, fixed links included, and of a sphere; negative if they overlap.
+  /// Returns within_m if the distance is not less.
   virtual double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                            double within_m = sim::kNothingNear) const = 0;
 
-  /// The same as the controller believes it, never more: a witness that is clear by this clearance can be followed.
-  virtual double believed_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
+  /// The same distance in the controller's model, which is never larger. If a witness keeps this clearance, the
+  /// controller can follow it.
+  virtual double controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
     return clearance(pose, center_m, radius_m);
   }
 
-  /// Whether its links keep as far from each other as the controller asks for.
+  /// Whether the links keep the controller's self-clearance from each other.
   virtual bool keeps_clear_of_itself(const ArmPose&) const { return true; }
 
   virtual Limits limits(const Family& family) const = 0;
 
-  /// Where scenes begin and end: a share of this range around its middle. Finite.
+  /// Joint range from which the start and the goal of a scene are drawn (a share of it around its middle). Finite.
   virtual Limits range() const = 0;
 
   virtual ArmSource source(const Family& family) const = 0;
 
-  /// In how many instants of a period the judge looks for contact.
-  virtual int looks_per_period() const = 0;
+  /// Number of instants of a period at which the judge checks for contact.
+  virtual int contact_checks_per_period() const = 0;
 };
 
-/// The judge's arm for a controller's: the benchmark's own where it is that, and any other as its URDF describes it.
-/// Throws std::runtime_error where surroundings are configured.
+/// The judge's model of the configured arm: Lwa3Arm if the arm is the benchmark's LWA3, or else UrdfArm. Throws
+/// std::runtime_error if surroundings are configured.
 std::unique_ptr<JudgeArm> judge_arm_of(const Config& config);
 
-/// Velocity of the tool over the joint velocities; with joint velocities, of its turning.
+/// Jacobian of the tool's position, base frame.
 ToolJacobian tool_jacobian(const ArmPose& pose);
-Vector3 tool_radps(const ArmPose& pose, const Joints& qd_radps);
+
+/// Angular velocity of the tool, base frame, rad/s.
+Vector3 tool_angular_velocity(const ArmPose& pose, const Joints& qd_radps);
 
 }  // namespace sidestep::campaign

@@ -11,7 +11,7 @@ namespace sidestep::campaign {
 namespace {
 
 constexpr size_t kJoints = 7;
-constexpr std::array<double, kJoints> kAlphaSign{0, 1, -1, 1, -1, 1, -1};  // of a quarter turn
+constexpr std::array<double, kJoints> kAlphaSign{0, 1, -1, 1, -1, 1, -1};  // alpha = sign * pi / 2
 constexpr std::array<double, kJoints> kOffset_m{0.3, 0, 0.328, 0, 0.2765, 0, 0};
 constexpr double kTool_m = 0.3372;
 
@@ -38,7 +38,7 @@ ArmPose Lwa3Arm::pose(const Joints& q_rad) const {
   Matrix3 rotation = Matrix3::Identity();
   Vector3 origin = Vector3::Zero();
   for (size_t i = 0; i < kJoints; ++i) {
-    // Craig: turn by alpha about x, move by d along the new z, turn by q about it.
+    // Craig: rotate by alpha about x, translate by d along the new z, rotate by q about the new z.
     if (kAlphaSign[i] != 0.0) {
       const Vector3 y = rotation.col(1);
       rotation.col(1) = kAlphaSign[i] * rotation.col(2);

@@ -5,7 +5,7 @@
 namespace sidestep::campaign {
 
 /// The benchmark's arm: the LWA3 from its modified (Craig) D-H table, seven joints, four capsules of one radius between
-/// five corners (foot, shoulder, elbow, wrist, tool). Paper Table 1 with the lengths of paper-notes.md, "The arm".
+/// five corners (base, shoulder, elbow, wrist, tool). Paper Table 1 with the lengths of paper-notes.md, "The arm".
 class Lwa3Arm : public JudgeArm {
  public:
   ArmPose pose(const Joints& q_rad) const override;
@@ -14,12 +14,12 @@ class Lwa3Arm : public JudgeArm {
   Limits limits(const Family& family) const override;
   Limits range() const override;
   ArmSource source(const Family& family) const override;
-  int looks_per_period() const override { return 1; }
+  int contact_checks_per_period() const override { return 1; }
 };
 
 constexpr double kLinkRadius_m = 0.05;
 
-/// The only one there need be.
+/// A shared instance.
 const JudgeArm& lwa3_arm();
 
 }  // namespace sidestep::campaign

@@ -23,7 +23,7 @@ enum ExitCode { kDone = 0, kBadInput = 2, kInterruptedBySignal = 130 };
 std::atomic<bool> interrupted{false};
 
 struct Options {
-  std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, replay, output;
+  std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output;
   uint64_t count = 500, seed = 1;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool quiet = false, smoothness = false, no_cpu = false;
@@ -37,29 +37,31 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--count", options.count, "scenes of each family")
       ->capture_default_str()
       ->check(CLI::Range(1, static_cast<int>(kMostScenes)));
-  app.add_option("--seed", options.seed, "of the run; the scenes' own seeds follow from it")
+  app.add_option("--seed", options.seed, "seed of the run, from which the scenes' seeds follow")
       ->capture_default_str()
       ->check(CLI::Range(0, 1'000'000'000));
   app.add_option("--law", options.law, "sidestep, paper, or plain (attraction only)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sidestep", "paper", "plain"}));
-  app.add_option("--config", options.config, "of the controller and its arm (default: the LWA3's)")->type_name("FILE");
-  app.add_option("--urdf", options.urdf, "of the arm, over what the configuration says; alone: the rest is default")
+  app.add_option("--config", options.config, "configuration of the controller and its arm (default: the LWA3's)")
+      ->type_name("FILE");
+  app.add_option("--urdf", options.urdf,
+                 "URDF of the arm instead of the configuration's; without --config the other settings are default")
       ->type_name("FILE");
   app.add_option("--base", options.base, "first link of the arm")->type_name("LINK");
   app.add_option("--tip", options.tip, "last link of the arm")->type_name("LINK");
-  app.add_option("--shard", options.shard, "only every n-th scene, from the i-th on")
+  app.add_option("--shard", options.shard, "run only every N-th scene, starting at the I-th")
       ->capture_default_str()
       ->type_name("I/N");
-  app.add_option("--csv", options.csv, "one row per trial into this file")->type_name("FILE");
-  app.add_option("--jobs", options.jobs, "threads")->capture_default_str()->check(CLI::Range(1, 256));
-  app.add_flag("--quiet", options.quiet, "no progress");
-  app.add_flag("--smoothness", options.smoothness, "also tell how smooth the commands were");
-  app.add_flag("--no-cpu", options.no_cpu, "leave the CPU times out; the rest is the same in every run");
-  app.add_option("--replay", options.replay, "write this one scene as a scenario of the simulator")
+  app.add_option("--csv", options.csv, "write one row per trial to this file")->type_name("FILE");
+  app.add_option("--jobs", options.jobs, "number of threads")->capture_default_str()->check(CLI::Range(1, 256));
+  app.add_flag("--quiet", options.quiet, "print no progress");
+  app.add_flag("--smoothness", options.smoothness, "also print how smooth the commands were");
+  app.add_flag("--no-cpu", options.no_cpu, "print no CPU times, so that the tables are the same in every run");
+  app.add_option("--replay", options.exported_scene, "only export this scene as a scenario of the simulator")
       ->type_name("FAMILY:SEED");
-  app.add_option("--output", options.output, "of --replay (default: standard output)")->type_name("FILE");
-  app.add_subcommand("merge", "the tables of all trials in these --csv files")
+  app.add_option("--output", options.output, "file for --replay (default: standard output)")->type_name("FILE");
+  app.add_subcommand("merge", "print the tables of all trials in files of --csv")
       ->fallthrough()
       ->add_option("files", options.merge, "CSV files")
       ->required();
@@ -76,7 +78,7 @@ Shard to_shard(const std::string& text) {
   const bool good = text.find_first_not_of("0123456789/") == std::string::npos && text.size() < 12 &&
                     std::sscanf(text.c_str(), "%u/%u%c", &index, &count, &rest) == 2;
   if (!good || index < 1 || index > count)
-    throw std::runtime_error(fmt::format("--shard: must be i/n with 1 <= i <= n, is '{}'", text));
+    throw std::runtime_error(fmt::format("--shard: '{}' must be I/N with 1 <= I <= N", text));
   return {index, count};
 }
 
@@ -93,7 +95,7 @@ std::string default_config() {
   return find_file(config_name("firmware/config/lwa3.yaml"));
 }
 
-/// The tables on standard output, and the rows where they are wanted.
+/// Prints the tables and, with --csv, writes the rows.
 void publish(std::vector<Row> rows, const Options& options) {
   sort_rows(rows);
   if (!options.csv.empty()) write_csv(options.csv, rows);
@@ -101,7 +103,7 @@ void publish(std::vector<Row> rows, const Options& options) {
   if (options.smoothness) fmt::print("{}", smoothness_table(rows));
 }
 
-/// As the controller itself would have it; for the benchmark's own arm if nothing is said.
+/// Loads the configuration as the controller would; the default is the LWA3's.
 Config config_of(const Options& options) {
   Overrides overrides{options.law == "plain" ? "" : options.law, options.urdf, options.base, options.tip};
   return load_config(options.config.empty() && options.urdf.empty() ? default_config() : options.config, overrides);
@@ -111,9 +113,9 @@ int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
-  if (!options.csv.empty()) write_csv(options.csv, {});  // fail now rather than after the work
-  const Entrant entrant{options.law, options.law == "plain" ? nullptr : &config.model, *arm};
-  const std::vector<Row> rows = run(tasks, entrant, options.jobs, options.quiet, interrupted);
+  if (!options.csv.empty()) write_csv(options.csv, {});  // fails before the trials if the file cannot be written
+  const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm};
+  const std::vector<Row> rows = run(tasks, tested, options.jobs, options.quiet, interrupted);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;
   fmt::print(stderr, "campaign: interrupted after {} of {} scenes\n", rows.size(), tasks.size());
@@ -130,9 +132,9 @@ int merge(const Options& options) {
   return kDone;
 }
 
-int write_replay(const Options& options) {
+int write_exported_scene(const Options& options) {
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config_of(options));
-  const std::string yaml = scenario_yaml(scene_named(options.replay, *arm));
+  const std::string yaml = export_scene(scene_to_export(options.exported_scene, *arm));
   if (options.output.empty()) {
     fmt::print("{}", yaml);
     return kDone;
@@ -146,13 +148,13 @@ int write_replay(const Options& options) {
 
 int act(const Options& options) {
   if (!options.merge.empty()) return merge(options);
-  return options.replay.empty() ? run_trials(options) : write_replay(options);
+  return options.exported_scene.empty() ? run_trials(options) : write_exported_scene(options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sidestep's witnessed benchmark: random scenes, each of which provably has a solution.");
+  CLI::App app("Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable.");
   Options options;
   declare(app, options);
   try {

@@ -6,8 +6,9 @@
 namespace sidestep::campaign {
 namespace {
 
+// Independent of the configuration, because plain tracking decides which scenes the benchmark has.
 constexpr double kPosition_per_s2 = 20.0, kVelocity_per_s = 8.94, kLargestSpeed_mps = 1.0;
-constexpr double kLambda = 0.08, kSigma = 0.08;
+constexpr double kLambda = 0.08, kSigma = 0.08;  // largest damping factor; least singular value below which it acts
 
 Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
   Matrix3 gram = jacobian * jacobian.transpose();
@@ -18,7 +19,7 @@ Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
   return jacobian.transpose() * gram.ldlt().solve(tool_mps);
 }
 
-/// Largest velocity with which a joint can still stop within gap_rad.
+/// Largest velocity from which a joint can still stop within gap_rad, rad/s.
 double stoppable(double gap_rad, double acceleration_radps2) {
   const double step = acceleration_radps2 * kPeriod_s;
   return std::sqrt(step * step + 2.0 * acceleration_radps2 * std::max(0.0, gap_rad)) - step;
@@ -26,17 +27,17 @@ double stoppable(double gap_rad, double acceleration_radps2) {
 
 }  // namespace
 
-Joints plain_tracking(const JudgeArm& arm, const Limits& limits, const Moving& target, const Joints& q_rad,
+Joints plain_tracking(const JudgeArm& arm, const Limits& limits, const PointMotion& target, const Joints& q_rad,
                       const Joints& qd_radps) {
   const ArmPose now = arm.pose(q_rad);
   const ToolJacobian jacobian = tool_jacobian(now);
   const Vector3 tool_mps = jacobian * qd_radps;
   const Vector3 force =
       kPosition_per_s2 * (target.position_m - now.tool()) + kVelocity_per_s * (target.velocity_mps - tool_mps);
-  Vector3 wish_mps = tool_mps + force * kPeriod_s;
-  wish_mps *= std::min(1.0, kLargestSpeed_mps / std::max(1e-9, wish_mps.norm()));
+  Vector3 nominal_mps = tool_mps + force * kPeriod_s;
+  nominal_mps *= std::min(1.0, kLargestSpeed_mps / std::max(1e-9, nominal_mps.norm()));
 
-  Joints velocity = damped_inverse(jacobian, wish_mps);
+  Joints velocity = damped_inverse(jacobian, nominal_mps);
   velocity /= std::max(1.0, velocity.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff());
   for (int i = 0; i < velocity.size(); ++i) {
     const double a = limits.acceleration_radps2[i], step = a * kPeriod_s;

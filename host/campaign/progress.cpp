@@ -16,7 +16,7 @@ constexpr size_t kBarWidth = 40;
 Progress::Progress(size_t total, bool quiet)
     : total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), drawn_(std::chrono::steady_clock::now()) {}
 
-void Progress::one_more(bool touched, bool succeeded) {
+void Progress::add(bool touched, bool succeeded) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++done_;
   touched_ += touched ? 1 : 0;

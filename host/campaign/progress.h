@@ -6,13 +6,14 @@
 
 namespace sidestep::campaign {
 
-/// How far the campaign is, on stderr: a bar when it is a terminal, a line every tenth otherwise, nothing when quiet.
-/// May be told from several threads.
+/// Reports the campaign's progress on stderr: a bar on a terminal, otherwise a line after every tenth of the scenes,
+/// nothing if quiet. add() may be called from several threads.
 class Progress {
  public:
   Progress(size_t total, bool quiet);
 
-  void one_more(bool touched, bool succeeded);
+  /// Counts one finished trial.
+  void add(bool touched, bool succeeded);
   void end();
 
  private:

@@ -9,7 +9,8 @@
 
 namespace sidestep::campaign {
 
-/// Random numbers that are the same everywhere: the engine is fixed by the language, the distributions are our own.
+/// Random numbers that are the same with every standard library: the standard defines the engine exactly, but not the
+/// distributions, so they are implemented here.
 class Random {
  public:
   /// Streams of different names are independent for the same seed.
@@ -23,10 +24,10 @@ class Random {
 
   double uniform(double low, double high) { return low + (high - low) * unit(); }
 
-  /// Each of low .. high with the same probability.
-  int whole(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
+  /// Uniform over low .. high, both included.
+  int integer(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
 
-  /// A point of the unit sphere, uniform.
+  /// Uniform on the unit sphere.
   Eigen::Vector3d direction() {
     const double z = uniform(-1.0, 1.0), angle = uniform(-M_PI, M_PI), r = std::sqrt(1.0 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};

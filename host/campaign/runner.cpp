@@ -15,22 +15,22 @@
 namespace sidestep::campaign {
 namespace {
 
-/// The threads' common state.
+/// State shared by the threads.
 class Work {
  public:
-  Work(const std::vector<Task>& tasks, const Entrant& entrant, bool quiet, const std::atomic<bool>& stop)
-      : tasks_(tasks), entrant_(entrant), stop_(stop), rows_(tasks.size()), progress_(tasks.size(), quiet) {
+  Work(const std::vector<Task>& tasks, const TestedController& tested, bool quiet, const std::atomic<bool>& stop)
+      : tasks_(tasks), tested_(tested), stop_(stop), rows_(tasks.size()), progress_(tasks.size(), quiet) {
     for (const Task& task : tasks)
-      if (entrant.model && models_.count(task.family) == 0)
-        models_.emplace(task.family, model_for(*entrant.model, entrant.arm.limits(*task.family)));
+      if (tested.model && models_.count(task.family) == 0)
+        models_.emplace(task.family, model_for(*tested.model, tested.arm.limits(*task.family)));
   }
 
   /// Takes tasks until none is left.
-  void help() {
+  void run_tasks() {
     for (size_t i; (i = next_++) < tasks_.size() && !stop_ && !failed_;) {
       try {
         rows_[i] = trial(tasks_[i]);
-        progress_.one_more(touched(*rows_[i]), succeeded(*rows_[i]));
+        progress_.add(touched(*rows_[i]), succeeded(*rows_[i]));
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex_);
         error_ = std::current_exception();
@@ -50,14 +50,15 @@ class Work {
 
  private:
   Row trial(const Task& task) const {
-    const Scene scene = make_scene(*task.family, task.seed, entrant_.arm);
-    const Model* model = entrant_.model ? &models_.at(task.family) : nullptr;
-    const std::unique_ptr<Pilot> pilot = make_pilot(model, entrant_.arm, entrant_.arm.limits(*task.family));
-    return {task.family, entrant_.law, task.seed, run_trial(scene, *pilot)};
+    const Scene scene = make_scene(*task.family, task.seed, tested_.arm);
+    const Model* model = tested_.model ? &models_.at(task.family) : nullptr;
+    const std::unique_ptr<TrialController> controller =
+        make_controller(model, tested_.arm, tested_.arm.limits(*task.family));
+    return {task.family, tested_.law, task.seed, run_trial(scene, *controller)};
   }
 
   const std::vector<Task>& tasks_;
-  const Entrant& entrant_;
+  const TestedController& tested_;
   const std::atomic<bool>& stop_;
   std::map<const Family*, Model> models_;
   std::vector<std::optional<Row>> rows_;
@@ -74,12 +75,12 @@ uint64_t scene_seed(uint64_t run_seed, uint64_t k) {
   return run_seed * kMostScenes + k;
 }
 
-std::vector<Row> run(const std::vector<Task>& tasks, const Entrant& entrant, int jobs, bool quiet,
+std::vector<Row> run(const std::vector<Task>& tasks, const TestedController& tested, int jobs, bool quiet,
                      const std::atomic<bool>& stop) {
-  Work work(tasks, entrant, quiet, stop);
+  Work work(tasks, tested, quiet, stop);
   std::vector<std::thread> threads;
-  for (int i = 1; i < jobs; ++i) threads.emplace_back([&work] { work.help(); });
-  work.help();
+  for (int i = 1; i < jobs; ++i) threads.emplace_back([&work] { work.run_tasks(); });
+  work.run_tasks();
   for (std::thread& thread : threads) thread.join();
   return work.finished();
 }

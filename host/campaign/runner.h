@@ -13,21 +13,21 @@ struct Task {
   uint64_t seed;
 };
 
-/// Scene k of a run with a seed; k below kMostScenes.
+/// Seed of scene k of a run; k below kMostScenes.
 constexpr uint64_t kMostScenes = 1'000'000;
 uint64_t scene_seed(uint64_t run_seed, uint64_t k);
 
-/// Who steers: the configured controller under the name of its law, or plain tracking when there is none; and what.
-struct Entrant {
-  std::string law;
-  const Model* model;
+/// The controller under test and its arm.
+struct TestedController {
+  std::string law;     ///< name in the tables
+  const Model* model;  ///< null: plain tracking
   const JudgeArm& arm = lwa3_arm();
 };
 
-/// Runs all tasks on `jobs` threads; the rows come in the order of the tasks and do not depend on the threads, CPU
-/// times excepted. When `stop` is raised the trials under way are finished and the rest is left out. Progress goes to
-/// stderr unless quiet.
-std::vector<Row> run(const std::vector<Task>& tasks, const Entrant& entrant, int jobs, bool quiet,
+/// Runs all tasks on `jobs` threads. The rows are in the order of the tasks and, except for CPU times, do not depend on
+/// the threads. When `stop` becomes true the trials in progress are finished and the rest is skipped. Progress is
+/// printed on stderr unless quiet.
+std::vector<Row> run(const std::vector<Task>& tasks, const TestedController& tested, int jobs, bool quiet,
                      const std::atomic<bool>& stop);
 
 }  // namespace sidestep::campaign

@@ -5,7 +5,7 @@
 namespace sidestep::campaign {
 
 double arrived_within_m(const Family& family) {
-  return family.dodge ? kBack_m : kArrived_m;
+  return family.dodge ? kReturned_m : kArrived_m;
 }
 
 Joints witness_rad(const Scene& scene, double t_s) {
@@ -20,17 +20,18 @@ Joints witness_radps(const Scene& scene, double t_s) {
   return 6.0 * u * (1.0 - u) / scene.witness_s * (scene.goal_rad - scene.start_rad);
 }
 
-Moving target_at(const Scene& scene, double t_s) {
+PointMotion target_at(const Scene& scene, double t_s) {
   if (!scene.family->chase) return {scene.arm->pose(scene.goal_rad).tool(), Vector3::Zero()};
   const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
   return {witness.tool(), tool_jacobian(witness) * witness_radps(scene, t_s)};
 }
 
-std::optional<Turning> turning_at(const Scene& scene, double t_s) {
+std::optional<OrientationTarget> orientation_target_at(const Scene& scene, double t_s) {
   const Family& family = *scene.family;
   if (!family.full_pose && !family.hold_orientation) return std::nullopt;
   const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
-  return Turning{Eigen::Quaterniond(witness.tool_rotation), tool_radps(witness, witness_radps(scene, t_s))};
+  return OrientationTarget{Eigen::Quaterniond(witness.tool_rotation),
+                           tool_angular_velocity(witness, witness_radps(scene, t_s))};
 }
 
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {

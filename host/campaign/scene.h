@@ -13,49 +13,51 @@ namespace sidestep::campaign {
 constexpr double kPeriod_s = 0.01;
 constexpr int64_t kPeriod_us = 10'000;
 constexpr double kSphereRadius_m = 0.05;
-constexpr double kArrived_m = 0.01;    ///< tool error of an arm that has arrived
-constexpr double kBack_m = 0.005;      ///< of one that is back after a dodge
-constexpr double kPlantLag_s = 0.030;  ///< family real, first order on the velocity
-constexpr double kPlantAcceleration_radps2 = 1e6;
+constexpr double kArrived_m = 0.01;                ///< the arm has arrived if the tool error is below this
+constexpr double kReturned_m = 0.005;              ///< the same after a dodge
+constexpr double kPlantLag_s = 0.030;              ///< family real: first-order lag of the joint velocity
+constexpr double kPlantAcceleration_radps2 = 1e6;  ///< family real: practically no limit
 
-/// One problem, from t = 0 to periods * kPeriod_s.
+/// One task among obstacles, from t = 0 to periods * kPeriod_s.
 struct Scene {
   const Family* family;
   uint64_t seed;
   const JudgeArm* arm;
   int periods;
   Joints start_rad;
-  Joints goal_rad;   ///< where the witness ends; in a dodge the start
+  Joints goal_rad;   ///< end of the witness; in a dodge the same as the start
   double witness_s;  ///< duration of the witness's motion; 0 in a dodge
   std::vector<SpherePath> spheres;
-  double crossing_s = 0.0;  ///< dodge: when the spheres cross the arm at its start
+  double crossing_s = 0.0;  ///< dodge: the time at which the spheres reach the arm's start configuration
 
   double duration_s() const { return periods * kPeriod_s; }
 };
 
-/// Tool error at the end of an arm that has done its task.
+/// Limit of the tool error at the end of a successful trial.
 double arrived_within_m(const Family& family);
 
-/// The witness at time t: from start to goal on the joint line with the profile 3u^2 - 2u^3, then at rest.
+/// The witness: a joint path that solves the scene. It moves on the straight line from start to goal in joint space
+/// with the profile 3u^2 - 2u^3, then rests.
 Joints witness_rad(const Scene& scene, double t_s);
 Joints witness_radps(const Scene& scene, double t_s);
 
-/// Where the tool shall be. Frozen before t = 0.
-Moving target_at(const Scene& scene, double t_s);
+/// Target of the tool's position, base frame. Before t = 0 it rests where it is at t = 0.
+PointMotion target_at(const Scene& scene, double t_s);
 
-/// How the tool shall be turned, and turn.
-struct Turning {
+/// Target of the tool's orientation and angular velocity, base frame.
+struct OrientationTarget {
   Eigen::Quaterniond orientation;
   Vector3 velocity_radps;
 };
 
-/// Absent where only the tool's position matters.
-std::optional<Turning> turning_at(const Scene& scene, double t_s);
+/// Absent if the task is only a position of the tool.
+std::optional<OrientationTarget> orientation_target_at(const Scene& scene, double t_s);
 
-/// Least clearance of the arm to all spheres at time t; within_m when it is not below that.
+/// Least clearance between the arm and all spheres at time t. Returns within_m if the clearance is not less.
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
 
-/// Dodge: the time while a sphere is so near to its crossing that the tool's deviation counts.
+/// Dodge: the pass, the time in which the spheres are within kPassReach_m of their crossing points. The tool's
+/// deviation is measured over the pass.
 constexpr double kPassReach_m = 0.35;
 double pass_begins_s(const Scene& scene);
 double pass_ends_s(const Scene& scene);

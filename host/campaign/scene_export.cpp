@@ -11,7 +11,7 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kWaypoint_s = 0.05;  // between two waypoints
+constexpr double kWaypointPeriod_s = 0.05;
 
 std::string list(const Eigen::Ref<const Eigen::VectorXd>& values) {
   std::string text;
@@ -19,16 +19,16 @@ std::string list(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return '[' + text + ']';
 }
 
-/// Position and velocity at t = 0 and, where the velocity changes, waypoints until the end: [t, position, velocity].
-std::string motion(const Scene& scene, bool straight, const std::function<Moving(double)>& at) {
-  const Moving start = at(0.0);
+/// Position and velocity at t = 0 and, unless straight, waypoints [t, position, velocity] until the end.
+std::string motion(const Scene& scene, bool straight, const std::function<PointMotion(double)>& at) {
+  const PointMotion start = at(0.0);
   std::string text = fmt::format("position_m: {}, velocity_mps: {}", list(start.position_m), list(start.velocity_mps));
   if (straight) return text;
   text += ",\n    waypoints: [";
-  for (int k = 1; (k - 1) * kWaypoint_s < scene.duration_s(); ++k) {
-    const Moving moving = at(k * kWaypoint_s);
+  for (int k = 1; (k - 1) * kWaypointPeriod_s < scene.duration_s(); ++k) {
+    const PointMotion point = at(k * kWaypointPeriod_s);
     Eigen::Matrix<double, 7, 1> values;
-    values << k * kWaypoint_s, moving.position_m, moving.velocity_mps;
+    values << k * kWaypointPeriod_s, point.position_m, point.velocity_mps;
     text += fmt::format("{}\n      {}", k == 1 ? "" : ",", list(values));
   }
   return text + ']';
@@ -37,8 +37,8 @@ std::string motion(const Scene& scene, bool straight, const std::function<Moving
 std::string target_yaml(const Scene& scene) {
   std::string text = motion(scene, !scene.family->chase, [&](double t_s) { return target_at(scene, t_s); });
   if (scene.family->hold_orientation) {
-    const Eigen::Quaterniond turn(scene.arm->pose(scene.start_rad).tool_rotation);
-    text += ", quaternion: " + list(Eigen::Vector4d(turn.w(), turn.x(), turn.y(), turn.z()));
+    const Eigen::Quaterniond hold(scene.arm->pose(scene.start_rad).tool_rotation);
+    text += ", quaternion: " + list(Eigen::Vector4d(hold.w(), hold.x(), hold.y(), hold.z()));
   }
   return '{' + text + '}';
 }
@@ -63,7 +63,7 @@ std::string plant_yaml(const Scene& scene) {
 
 }  // namespace
 
-Scene scene_named(const std::string& name, const JudgeArm& arm) {
+Scene scene_to_export(const std::string& name, const JudgeArm& arm) {
   const size_t colon = name.find(':');
   if (colon != std::string::npos) {
     uint64_t seed = 0;
@@ -71,12 +71,13 @@ Scene scene_named(const std::string& name, const JudgeArm& arm) {
     const auto [rest, error] = std::from_chars(name.data() + colon + 1, end, seed);
     if (error == std::errc() && rest == end) return make_scene(family_named(name.substr(0, colon)), seed, arm);
   }
-  throw std::runtime_error(fmt::format("--replay: must be family:seed, is '{}'", name));
+  throw std::runtime_error(fmt::format("--replay: '{}' must be FAMILY:SEED", name));
 }
 
-std::string scenario_yaml(const Scene& scene) {
+std::string export_scene(const Scene& scene) {
   const Family& family = *scene.family;
-  if (family.full_pose) throw std::runtime_error("--replay: the simulator's targets cannot turn as a witness does");
+  if (family.full_pose)
+    throw std::runtime_error("--replay: a scenario cannot describe the orientation of a full-pose family's target");
   std::string text = fmt::format("# Written by: build/campaign --replay {}:{}\n", family.name, scene.seed);
   if (family.real)
     text += "# In the benchmark the obstacle messages are noisy, late and incomplete; here they are exact.\n";

@@ -15,12 +15,12 @@ namespace sidestep::campaign {
 namespace {
 
 constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
-constexpr double kRest_s = 5.0, kLongest_s = 12.0;
-constexpr int kMostWitnesses = 100'000;  // for one that is short enough
-constexpr int kMostAttempts = 1'000;     // at a scene; the benchmark's own needed up to 83
-constexpr int kMostDraws = 20'000;       // of a posture; of spheres before another witness is drawn
+constexpr double kRest_s = 5.0, kLongest_s = 12.0;  // time after the witness's motion; longest scene
+constexpr int kMostWitnesses = 100'000;             // draws until a witness is short enough
+constexpr int kMostAttempts = 1'000;                // to make a scene; the LWA3's scenes needed up to 83
+constexpr int kMostDraws = 20'000;                  // of a posture, or of spheres before another witness is drawn
 
-/// A random posture within a share of the joints' range, high enough above the floor.
+/// Draws a posture within a share of the joints' range, high enough above the floor.
 Joints draw_posture(Random& random, const JudgeArm& arm, double share, double lowest_wrist_m) {
   const Limits range = arm.range();
   Joints q_rad(range.lower_rad.size());
@@ -32,10 +32,10 @@ Joints draw_posture(Random& random, const JudgeArm& arm, double share, double lo
     const ArmPose pose = arm.pose(q_rad);
     if (pose.tool().z() > 0.15 && pose.wrist().z() > lowest_wrist_m && arm.keeps_clear_of_itself(pose)) return q_rad;
   }
-  throw std::runtime_error("the arm has no posture above its own foot for a scene");
+  throw std::runtime_error("no posture found whose tool is above the base and whose links keep clear of each other");
 }
 
-/// Start, goal and duration; false when the motion takes too long.
+/// Draws start, goal and duration. Returns false if the motion takes too long.
 bool try_witness(Random& random, Scene& scene) {
   scene.start_rad = draw_posture(random, *scene.arm, 0.7, kNoFloor);
   scene.goal_rad = draw_posture(random, *scene.arm, 0.8, 0.10);
@@ -54,7 +54,7 @@ void draw_witness(Random& random, Scene& scene) {
                   scene.family->name, kMostWitnesses, kLongest_s - kRest_s));
 }
 
-/// At every period; none when the arm would come too near to itself.
+/// Poses of the witness at every period; empty if its links come too close to each other.
 std::vector<ArmPose> witness_poses(const Scene& scene) {
   std::vector<ArmPose> poses;
   for (int k = 0; k <= scene.periods; ++k) {
@@ -74,16 +74,17 @@ SpherePath draw_sphere(Random& random, const Scene& scene) {
   SpherePath path(start_m, draw_velocity(random, *scene.family));
   while (scene.family->erratic && path.last_knot_s() < scene.duration_s()) {
     const double duration_s = random.uniform(0.5, 2.0);
-    path.then(duration_s, draw_velocity(random, *scene.family));
+    path.add_knot(duration_s, draw_velocity(random, *scene.family));
   }
   return path;
 }
 
-bool belongs(const JudgeArm& arm, const std::vector<ArmPose>& witness, const SpherePath& sphere) {
+/// Whether the sphere comes within kWitnessNear_m of the witness, but never closer than kWitnessClearance_m.
+bool fits_witness(const JudgeArm& arm, const std::vector<ArmPose>& witness, const SpherePath& sphere) {
   double least_m = std::numeric_limits<double>::infinity();
   for (size_t k = 0; k < witness.size(); ++k) {
     const Vector3 center_m = sphere.at(static_cast<double>(k) * kPeriod_s).position_m;
-    least_m = std::min(least_m, arm.believed_clearance(witness[k], center_m, kSphereRadius_m));
+    least_m = std::min(least_m, arm.controller_clearance(witness[k], center_m, kSphereRadius_m));
     if (least_m < kWitnessClearance_m) return false;
     if (arm.clearance(witness[k], center_m, kSphereRadius_m, kWitnessClearance_m) < kWitnessClearance_m) return false;
   }
@@ -93,12 +94,12 @@ bool belongs(const JudgeArm& arm, const std::vector<ArmPose>& witness, const Sph
 bool draw_spheres(Random& random, Scene& scene) {
   scene.spheres.clear();
   const int most = scene.family->most_obstacles;
-  const auto wanted = static_cast<size_t>(random.whole(std::min(1, most), most));
+  const auto wanted = static_cast<size_t>(random.integer(std::min(1, most), most));
   const std::vector<ArmPose> witness = witness_poses(scene);
   if (witness.empty()) return false;
   for (int draw = 0; draw < kMostDraws && scene.spheres.size() < wanted; ++draw) {
     SpherePath sphere = draw_sphere(random, scene);
-    if (belongs(*scene.arm, witness, sphere)) scene.spheres.push_back(std::move(sphere));
+    if (fits_witness(*scene.arm, witness, sphere)) scene.spheres.push_back(std::move(sphere));
   }
   return scene.spheres.size() == wanted;
 }
@@ -117,7 +118,7 @@ Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
   for (int attempt = 0; attempt < kMostAttempts; ++attempt)
     if (try_scene(random, scene)) return scene;
   throw std::runtime_error(
-      fmt::format("{}: no scene in {} attempts: spheres find no place beside this arm, or none is in its way",
+      fmt::format("{}: no scene in {} attempts: no spheres keep clear of the witness and block plain tracking",
                   family.name, kMostAttempts));
 }
 

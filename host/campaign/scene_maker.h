@@ -5,13 +5,13 @@
 
 namespace sidestep::campaign {
 
-/// The scene of a family, a seed and an arm; the same one everywhere and always. Draws until the benchmark's rules keep
-/// one: the witness stays 0.05 m clear of every sphere and each comes within 0.25 m of it, and plain tracking hits one,
-/// where there is any.
-/// The arm must outlive the scene. Throws std::runtime_error for an arm that allows no scene.
+/// The scene of a family, a seed and an arm; always the same for the same arguments. Draws scenes until one satisfies
+/// the benchmark's rules: the witness stays 0.05 m clear of every sphere, each sphere comes within 0.25 m of the
+/// witness, and plain tracking touches a sphere (unless the family has none).
+/// The arm must outlive the scene. Throws std::runtime_error if no scene is found for the arm.
 Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm = lwa3_arm());
 
-/// Clearance of the witness that makes a sphere part of a scene.
+/// Least clearance between the witness and a sphere of a scene, and the distance that every sphere comes within.
 constexpr double kWitnessClearance_m = 0.05;
 constexpr double kWitnessNear_m = 0.25;
 

@@ -10,7 +10,7 @@ constexpr int64_t kRate_hz = 30, kDelay_us = 40'000;
 
 Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed) {}
 
-const Sighting& Sensing::look(int64_t now_us, double t_s) {
+const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
   if (!scene_.family->real) {
     newest_.received_us = now_us;
     ++newest_.count;
@@ -20,24 +20,24 @@ const Sighting& Sensing::look(int64_t now_us, double t_s) {
   }
   for (int64_t at_us; (at_us = next_capture_ * 1'000'000 / kRate_hz) <= now_us; ++next_capture_)
     capture(at_us, t_s - static_cast<double>(now_us - at_us) / 1e6);
-  while (!on_the_way_.empty() && on_the_way_.front().received_us <= now_us) {
-    on_the_way_.front().count = newest_.count + 1;
-    newest_ = std::move(on_the_way_.front());
-    on_the_way_.pop_front();
+  while (!in_transit_.empty() && in_transit_.front().received_us <= now_us) {
+    in_transit_.front().count = newest_.count + 1;
+    newest_ = std::move(in_transit_.front());
+    in_transit_.pop_front();
   }
   return newest_;
 }
 
 void Sensing::capture(int64_t at_us, double t_s) {
-  Sighting sighting;
-  sighting.received_us = at_us + kDelay_us;
+  ObstacleMeasurement measurement;
+  measurement.received_us = at_us + kDelay_us;
   for (const SpherePath& sphere : scene_.spheres) {
-    Moving seen = sphere.at(t_s);
-    for (int axis = 0; axis < 3; ++axis) seen.position_m[axis] += kNoise_m * random_.normal();
-    sighting.spheres.push_back(seen);
+    PointMotion measured = sphere.at(t_s);
+    for (int axis = 0; axis < 3; ++axis) measured.position_m[axis] += kNoise_m * random_.normal();
+    measurement.spheres.push_back(measured);
   }
   const bool lost = random_.uniform(0.0, 1.0) < kLoss;
-  if (!lost) on_the_way_.push_back(std::move(sighting));
+  if (!lost) in_transit_.push_back(std::move(measurement));
 }
 
 }  // namespace sidestep::campaign

@@ -7,7 +7,7 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kNoticeable_radps2 = 0.1;  // one percent of what the joints can do
+constexpr double kNoticeable_radps2 = 0.1;  // one percent of the joints' acceleration limit
 
 }  // namespace
 

@@ -13,14 +13,14 @@ double blend_integral(double u) {
 
 }  // namespace
 
-void SpherePath::then(double duration_s, const Vector3& velocity_mps) {
+void SpherePath::add_knot(double duration_s, const Vector3& velocity_mps) {
   const Knot& last = knots_.back();
   const Vector3 position_m =
       last.position_m + duration_s * (last.velocity_mps + blend_integral(1.0) * (velocity_mps - last.velocity_mps));
   knots_.push_back({last.t_s + duration_s, position_m, velocity_mps});
 }
 
-Moving SpherePath::at(double t_s) const {
+PointMotion SpherePath::at(double t_s) const {
   if (t_s <= 0.0) return {knots_.front().position_m, knots_.front().velocity_mps};
   size_t i = knots_.size() - 1;
   while (knots_[i].t_s > t_s) --i;

@@ -21,10 +21,10 @@ std::vector<Sample> samples(const std::vector<Row>& rows) {
 }
 
 bool touched(const Row& row) {
-  return row.outcome.clearance_m < 0.0;
+  return row.metrics.clearance_m < 0.0;
 }
 bool arrived(const Row& row) {
-  return row.outcome.final_error_m < arrived_within_m(*row.family);
+  return row.metrics.final_error_m < arrived_within_m(*row.family);
 }
 bool succeeded(const Row& row) {
   return !touched(row) && arrived(row);
@@ -41,33 +41,33 @@ double percent(const Sample& sample, bool (*holds)(const Row&)) {
          static_cast<double>(sample.size());
 }
 
-double mean(const Sample& sample, double Outcome::*value) {
+double mean(const Sample& sample, double TrialMetrics::*value) {
   double sum = 0.0;
   int count = 0;
   for (const Row& row : sample) {
-    if (std::isnan(row.outcome.*value)) continue;
-    sum += row.outcome.*value;
+    if (std::isnan(row.metrics.*value)) continue;
+    sum += row.metrics.*value;
     ++count;
   }
   return sum / count;
 }
 
-double largest(const Sample& sample, double Outcome::*value) {
-  double result = Outcome::kNone;
-  for (const Row& row : sample) result = std::fmax(result, row.outcome.*value);
+double largest(const Sample& sample, double TrialMetrics::*value) {
+  double result = TrialMetrics::kNone;
+  for (const Row& row : sample) result = std::fmax(result, row.metrics.*value);
   return result;
 }
 
-double least(const Sample& sample, double Outcome::*value) {
-  double result = Outcome::kNone;
-  for (const Row& row : sample) result = std::fmin(result, row.outcome.*value);
+double least(const Sample& sample, double TrialMetrics::*value) {
+  double result = TrialMetrics::kNone;
+  for (const Row& row : sample) result = std::fmin(result, row.metrics.*value);
   return result;
 }
 
-double ratio(const Sample& sample, double Outcome::*value, double Outcome::*reference) {
+double ratio(const Sample& sample, double TrialMetrics::*value, double TrialMetrics::*reference) {
   const Sample good = successes(sample);
   const double sum = std::accumulate(good.begin(), good.end(), 0.0, [&](double so_far, const Row& row) {
-    return so_far + row.outcome.*value / row.outcome.*reference;
+    return so_far + row.metrics.*value / row.metrics.*reference;
   });
   return sum / static_cast<double>(good.size());
 }

@@ -7,24 +7,27 @@ namespace sidestep::campaign {
 /// All trials of one law in one family, by seed.
 using Sample = std::vector<Row>;
 
-/// Sorted rows, cut where law or family changes.
+/// Splits sorted rows where law or family changes.
 std::vector<Sample> samples(const std::vector<Row>& rows);
 
+/// The arm touched an obstacle.
 bool touched(const Row& row);
-/// The tool is at the target at the end: within 10 mm; back within 5 mm after a dodge.
+/// The tool is at the target at the end: within 10 mm, after a dodge within 5 mm.
 bool arrived(const Row& row);
+/// The arm arrived without contact.
 bool succeeded(const Row& row);
 
 Sample successes(const Sample& sample);
 
+/// Share of the trials that satisfy a condition, %.
 double percent(const Sample& sample, bool (*holds)(const Row&));
 
-/// Over the trials that have the value; NaN if none has.
-double mean(const Sample& sample, double Outcome::*value);
-double largest(const Sample& sample, double Outcome::*value);
-double least(const Sample& sample, double Outcome::*value);
+/// Over the trials whose value is not NaN; NaN if there are none.
+double mean(const Sample& sample, double TrialMetrics::*value);
+double largest(const Sample& sample, double TrialMetrics::*value);
+double least(const Sample& sample, double TrialMetrics::*value);
 
-/// Mean of value / reference over the trials that succeeded.
-double ratio(const Sample& sample, double Outcome::*value, double Outcome::*reference);
+/// Mean of value / reference over the successful trials.
+double ratio(const Sample& sample, double TrialMetrics::*value, double TrialMetrics::*reference);
 
 }  // namespace sidestep::campaign

@@ -11,39 +11,39 @@
 namespace sidestep::campaign {
 namespace {
 
-using Value = double Outcome::*;
-using Figure = std::function<double(const Sample&)>;
+using Value = double TrialMetrics::*;
+using Statistic = std::function<double(const Sample&)>;
 
-Figure share(bool (*holds)(const Row&)) {
+Statistic share(bool (*holds)(const Row&)) {
   return [=](const Sample& sample) { return percent(sample, holds); };
 }
 
-Figure average(Value value, double unit = 1.0) {
+Statistic average(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return mean(sample, value) / unit; };
 }
 
-Figure average_success(Value value) {
+Statistic average_success(Value value) {
   return [=](const Sample& sample) { return mean(successes(sample), value); };
 }
 
-Figure over_witness(Value value, Value of_witness) {
+Statistic over_witness(Value value, Value of_witness) {
   return [=](const Sample& sample) { return ratio(sample, value, of_witness); };
 }
 
-Figure most(Value value, double unit = 1.0) {
+Statistic maximum(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return largest(sample, value) / unit; };
 }
 
-Figure fewest(Value value, double unit = 1.0) {
+Statistic minimum(Value value, double unit = 1.0) {
   return [=](const Sample& sample) { return least(sample, value) / unit; };
 }
 
-/// One column: two lines of title, and what stands below.
+/// One column of a table; title and unit are two lines above its values.
 struct Column {
   const char* title;
   const char* unit;
   int digits;
-  Figure figure;
+  Statistic statistic;
 };
 
 using Columns = std::vector<Column>;
@@ -56,52 +56,52 @@ const Columns& reach_columns() {
       {"success", "%", 1, share(succeeded)},
       {"contact", "%", 1, share(touched)},
       {"arrival", "%", 1, share(arrived)},
-      {"clearance", "least, mm", 1, fewest(&Outcome::clearance_m, kMilli)},
-      {"arrival", "s", 2, average_success(&Outcome::arrival_s)},
-      {"arrival", "/ witness", 2, over_witness(&Outcome::arrival_s, &Outcome::witness_arrival_s)},
-      {"joint path", "/ witness", 2, over_witness(&Outcome::path_rad, &Outcome::witness_path_rad)},
-      {"tracking", "RMS, mm", 1, average(&Outcome::error_rms_m, kMilli)},
-      {"on target", "% of time", 1, average(&Outcome::on_target_share, 0.01)},
+      {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
+      {"arrival", "s", 2, average_success(&TrialMetrics::arrival_s)},
+      {"arrival", "/ witness", 2, over_witness(&TrialMetrics::arrival_s, &TrialMetrics::witness_arrival_s)},
+      {"joint path", "/ witness", 2, over_witness(&TrialMetrics::path_rad, &TrialMetrics::witness_path_rad)},
+      {"tracking", "RMS, mm", 1, average(&TrialMetrics::error_rms_m, kMilli)},
+      {"on target", "% of time", 1, average(&TrialMetrics::on_target_share, 0.01)},
   };
   return columns;
 }
 
 Columns full_pose_columns() {
   Columns columns = reach_columns();
-  columns.push_back({"turn", "RMS, deg", 1, average(&Outcome::turn_rms_rad, kDegree)});
+  columns.push_back({"orientation", "RMS, deg", 1, average(&TrialMetrics::turn_rms_rad, kDegree)});
   return columns;
 }
 
 const Columns& dodge_columns() {
   static const Columns columns{
       {"contact", "%", 1, share(touched)},
-      {"tool", "RMS, mm", 1, average(&Outcome::error_rms_m, kMilli)},
-      {"tool", "largest, mm", 0, most(&Outcome::error_max_m, kMilli)},
-      {"turn", "RMS, deg", 1, average(&Outcome::turn_rms_rad, kDegree)},
-      {"back", "%", 1, share(arrived)},
-      {"clearance", "least, mm", 1, fewest(&Outcome::clearance_m, kMilli)},
+      {"tool error", "RMS, mm", 1, average(&TrialMetrics::error_rms_m, kMilli)},
+      {"tool error", "max, mm", 0, maximum(&TrialMetrics::error_max_m, kMilli)},
+      {"orientation", "RMS, deg", 1, average(&TrialMetrics::turn_rms_rad, kDegree)},
+      {"returned", "%", 1, share(arrived)},
+      {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
   };
   return columns;
 }
 
 const Columns& cpu_columns() {
   static const Columns columns{
-      {"CPU", "mean, us", 1, average(&Outcome::cpu_mean_s, kMicro)},
-      {"CPU", "worst, us", 0, most(&Outcome::cpu_worst_s, kMicro)},
+      {"CPU", "mean, us", 1, average(&TrialMetrics::cpu_mean_s, kMicro)},
+      {"CPU", "max, us", 0, maximum(&TrialMetrics::cpu_worst_s, kMicro)},
   };
   return columns;
 }
 
 const Columns& smoothness_columns() {
   static const Columns columns{
-      {"joint margin", "least, rad", 3, fewest(&Outcome::limit_margin_rad)},
-      {"speed", "largest, rad/s", 3, most(&Outcome::speed_radps)},
-      {"acceleration", "largest, rad/s2", 2, most(&Outcome::acceleration_radps2)},
-      {"acceleration", "mean largest", 2, average(&Outcome::acceleration_radps2)},
-      {"jerk", "largest, rad/s3", 0, most(&Outcome::jerk_radps3)},
-      {"jerk", "mean largest", 0, average(&Outcome::jerk_radps3)},
-      {"chatter", "largest, 1/s", 1, most(&Outcome::chatter_per_s)},
-      {"chatter", "mean, 1/s", 2, average(&Outcome::chatter_per_s)},
+      {"joint margin", "min, rad", 3, minimum(&TrialMetrics::limit_margin_rad)},
+      {"speed", "max, rad/s", 3, maximum(&TrialMetrics::speed_radps)},
+      {"acceleration", "max, rad/s2", 2, maximum(&TrialMetrics::acceleration_radps2)},
+      {"acceleration", "mean max", 2, average(&TrialMetrics::acceleration_radps2)},
+      {"jerk", "max, rad/s3", 0, maximum(&TrialMetrics::jerk_radps3)},
+      {"jerk", "mean max", 0, average(&TrialMetrics::jerk_radps3)},
+      {"chatter", "max, 1/s", 1, maximum(&TrialMetrics::chatter_per_s)},
+      {"chatter", "mean, 1/s", 2, average(&TrialMetrics::chatter_per_s)},
   };
   return columns;
 }
@@ -117,11 +117,11 @@ Line line_of(const Sample& sample, const Columns& columns) {
   const Row &first = sample.front(), &last = sample.back();
   Line line{first.law, first.family->name, fmt::format("{}", sample.size()),
             fmt::format("{}..{}", first.seed, last.seed)};
-  for (const Column& column : columns) line.push_back(number(column.figure(sample), column.digits));
+  for (const Column& column : columns) line.push_back(number(column.statistic(sample), column.digits));
   return line;
 }
 
-/// Every column as wide as its widest cell; the first two to the left.
+/// Makes every column as wide as its widest cell; the first two columns are left-aligned, the others right-aligned.
 std::string aligned(const std::vector<Line>& lines) {
   std::vector<size_t> widths(lines.front().size(), 0);
   for (const Line& line : lines)

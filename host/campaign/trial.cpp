@@ -22,30 +22,30 @@ sim::PlantSpec plant_of(const Scene& scene) {
   return spec;
 }
 
-/// The scene, the arm in it and the clock of the pilot.
+/// The closed loop of scene, plant, sensing and controller, with the controller's clock.
 class Loop {
  public:
-  Loop(const Scene& scene, Pilot& pilot)
-      : scene_(scene), pilot_(pilot), plant_(plant_of(scene), scene.start_rad), sensing_(scene) {}
+  Loop(const Scene& scene, TrialController& controller)
+      : scene_(scene), controller_(controller), plant_(plant_of(scene), scene.start_rad), sensing_(scene) {}
 
   const sim::Plant& plant() const { return plant_; }
 
-  Steering ask(double t_s) {
+  ControllerOutput control(double t_s) {
     const Joints q_rad = plant_.q_rad(), qd_radps = plant_.qd_radps();
-    const Moving target = target_at(scene_, t_s);
-    const std::optional<Turning> turning = turning_at(scene_, t_s);
-    return pilot_.cycle({now_us_, q_rad, qd_radps, target, turning, sensing_.look(now_us_, t_s)});
+    const PointMotion target = target_at(scene_, t_s);
+    const std::optional<OrientationTarget> orientation_target = orientation_target_at(scene_, t_s);
+    return controller_.cycle({now_us_, q_rad, qd_radps, target, orientation_target, sensing_.newest_at(now_us_, t_s)});
   }
 
-  void move(const Steering& steering) {
-    plant_.command(steering.velocity_radps);
+  void apply(const ControllerOutput& output) {
+    plant_.command(output.velocity_radps);
     plant_.advance(kPeriod_us);
     now_us_ += kPeriod_us;
   }
 
  private:
   const Scene& scene_;
-  Pilot& pilot_;
+  TrialController& controller_;
   sim::Plant plant_;
   Sensing sensing_;
   int64_t now_us_ = 1'000'000;
@@ -53,24 +53,24 @@ class Loop {
 
 }  // namespace
 
-Outcome run_trial(const Scene& scene, Pilot& pilot) {
-  Loop loop(scene, pilot);
-  Steering steering = loop.ask(0.0);
-  for (int cycle = 0; !steering.tracking; ++cycle) {
+TrialMetrics run_trial(const Scene& scene, TrialController& controller) {
+  Loop loop(scene, controller);
+  ControllerOutput output = loop.control(0.0);
+  for (int cycle = 0; !output.tracking; ++cycle) {
     if (cycle == kMostCyclesToTrack)
-      throw std::runtime_error(fmt::format("the controller did not track: {}", steering.message));
-    loop.move(steering);
-    steering = loop.ask(0.0);
+      throw std::runtime_error(fmt::format("the controller did not track: {}", output.message));
+    loop.apply(output);
+    output = loop.control(0.0);
   }
   Judge judge(scene, loop.plant().last_command_radps());
   for (int k = 0; k < scene.periods; ++k) {
-    if (k > 0) steering = loop.ask(k * kPeriod_s);
-    judge.see(k, loop.plant().q_rad());
-    judge.hear(steering.velocity_radps, steering.cpu_s);
-    loop.move(steering);
+    if (k > 0) output = loop.control(k * kPeriod_s);
+    judge.record_state(k, loop.plant().q_rad());
+    judge.record_command(output.velocity_radps, output.cpu_s);
+    loop.apply(output);
   }
-  judge.see(scene.periods, loop.plant().q_rad());
-  return judge.verdict();
+  judge.record_state(scene.periods, loop.plant().q_rad());
+  return judge.metrics();
 }
 
 }  // namespace sidestep::campaign

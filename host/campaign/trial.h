@@ -1,12 +1,12 @@
 #pragma once
 
-#include "host/campaign/outcome.h"
-#include "host/campaign/pilot.h"
+#include "host/campaign/metrics.h"
+#include "host/campaign/trial_controller.h"
 
 namespace sidestep::campaign {
 
-/// One pilot through one scene: the closed loop around it, in process. The world stands still until the pilot tracks;
-/// that cycle is t = 0. Throws std::runtime_error when it never does.
-Outcome run_trial(const Scene& scene, Pilot& pilot);
+/// Runs one controller through one scene in an in-process closed loop. The scene is frozen until the controller tracks;
+/// its first cycle that tracks is t = 0. Throws std::runtime_error if the controller does not track within 5 s.
+TrialMetrics run_trial(const Scene& scene, TrialController& controller);
 
 }  // namespace sidestep::campaign

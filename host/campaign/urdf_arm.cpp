@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kCoincident_m = 1e-3;
 
-/// A joint that can turn farther than once around is used for one turn, around the middle of its range.
+/// Limits a joint range of more than one revolution to one revolution around its middle.
 void cut_to_one_turn(double& lower_rad, double& upper_rad) {
   if (upper_rad - lower_rad <= 2.0 * M_PI) return;
   const double middle_rad = std::isfinite(upper_rad - lower_rad) ? 0.5 * (lower_rad + upper_rad) : 0.0;
@@ -26,7 +26,7 @@ UrdfArm::UrdfArm(const Config& config)
       model_(config.model) {}
 
 ArmPose UrdfArm::pose(const Joints& q_rad) const {
-  const auto truth = std::make_shared<sim::Truth>(truth_);  // shares the meshes
+  const auto truth = std::make_shared<sim::Truth>(truth_);  // the copy shares the meshes
   truth->place(q_rad);
   ArmPose pose;
   pose.tool_rotation = truth->arm().base_from_tool().linear();
@@ -50,7 +50,7 @@ double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double r
   return pose.truth->nearest({sphere}, within_m).clearance_m;
 }
 
-double UrdfArm::believed_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
+double UrdfArm::controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
   double least_m = sim::kNothingNear;
   for (const Capsule& capsule : pose.capsules)
     least_m = std::min(least_m, (nearest_on_segment(capsule.start, capsule.end, center_m) - center_m).norm() -

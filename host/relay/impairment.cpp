@@ -9,7 +9,8 @@
 namespace sidestep::relay {
 namespace {
 
-constexpr double kHeldBack_s = 0.03;  // a reordered message: longer than the period of any channel
+constexpr double kReorderDelay_s = 0.03;  // of a reordered message; longer than the period of any channel
+constexpr double kLongestDelay_s = 10.0;
 
 double number(const std::string& rule, const std::string& text, double highest) {
   char* end = nullptr;
@@ -20,7 +21,6 @@ double number(const std::string& rule, const std::string& text, double highest) 
 }
 
 void set(const std::string& text, const std::string& key, const std::string& value, Rule& rule) {
-  const double longest_s = 10.0;
   if (key == "drop") {
     rule.drop = number(text, value, 1.0);
   } else if (key == "duplicate") {
@@ -31,12 +31,13 @@ void set(const std::string& text, const std::string& key, const std::string& val
     rule.corrupt = number(text, value, 1.0);
   } else if (key == "delay") {
     const size_t dots = value.find("..");
-    rule.least_delay_s = number(text, value.substr(0, dots), longest_s);
+    rule.least_delay_s = number(text, value.substr(0, dots), kLongestDelay_s);
     rule.most_delay_s =
-        dots == std::string::npos ? rule.least_delay_s : number(text, value.substr(dots + 2), longest_s);
-    if (rule.most_delay_s < rule.least_delay_s) throw std::runtime_error(text + ": delay: must not fall");
+        dots == std::string::npos ? rule.least_delay_s : number(text, value.substr(dots + 2), kLongestDelay_s);
+    if (rule.most_delay_s < rule.least_delay_s)
+      throw std::runtime_error(text + ": delay: the second value must not be less than the first");
   } else {
-    throw std::runtime_error(fmt::format("{}: there is no '{}'", text, key));
+    throw std::runtime_error(fmt::format("{}: unknown impairment '{}'", text, key));
   }
 }
 
@@ -44,12 +45,13 @@ void set(const std::string& text, const std::string& key, const std::string& val
 
 Rule parse_rule(const std::string& text) {
   const size_t colon = text.find(':');
-  if (colon == 0 || colon == std::string::npos) throw std::runtime_error(text + ": must be CHANNEL:WHAT=VALUE,...");
+  if (colon == 0 || colon == std::string::npos)
+    throw std::runtime_error(text + ": must be CHANNEL:IMPAIRMENT=VALUE,...");
   Rule rule;
   try {
     rule.channel = std::regex(text.substr(0, colon));
   } catch (const std::regex_error&) {
-    throw std::runtime_error(text + ": the channel is no regular expression");
+    throw std::runtime_error(text + ": the channel is not a valid regular expression");
   }
   std::istringstream settings(text.substr(colon + 1));
   for (std::string setting; std::getline(settings, setting, ',');) {
@@ -59,18 +61,18 @@ Rule parse_rule(const std::string& text) {
   return rule;
 }
 
-bool Impairment::happens(double share, int64_t& count) {
-  const bool yes = uniform(0.0, 1.0) < share;
-  count += yes;
-  return yes;
+bool Impairment::draw(double share, int64_t& count) {
+  const bool drawn = uniform(0.0, 1.0) < share;
+  count += drawn;
+  return drawn;
 }
 
-/// A few wrong bytes, a lost end, or one that does not belong there.
+/// Changes up to 8 bytes. Before that one third of the messages lose their end, and another third get bytes appended.
 void Impairment::corrupt(std::vector<uint8_t>& bytes) {
   const auto below = [this](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random_); };
-  const size_t way = below(3);
-  if (way == 0) bytes.resize(below(bytes.size() + 1));
-  if (way == 1) bytes.resize(bytes.size() + 1 + below(64));
+  const size_t kind = below(3);
+  if (kind == 0) bytes.resize(below(bytes.size() + 1));
+  if (kind == 1) bytes.resize(bytes.size() + 1 + below(64));
   for (size_t n = 1 + below(8); n > 0 && !bytes.empty(); --n) bytes[below(bytes.size())] ^= 1 + below(255);
 }
 
@@ -79,12 +81,12 @@ std::vector<Delivery> Impairment::deliver(const std::string& channel, std::vecto
   const auto rule = std::find_if(rules_.begin(), rules_.end(),
                                  [&](const Rule& candidate) { return std::regex_match(channel, candidate.channel); });
   if (rule == rules_.end()) return {{now_s, channel, std::move(bytes)}};
-  if (happens(rule->drop, counts_.dropped)) return {};
-  if (happens(rule->corrupt, counts_.corrupted)) corrupt(bytes);
-  const double held_back_s = happens(rule->reorder, counts_.reordered) ? kHeldBack_s : 0.0;
+  if (draw(rule->drop, counts_.dropped)) return {};
+  if (draw(rule->corrupt, counts_.corrupted)) corrupt(bytes);
+  const double reorder_delay_s = draw(rule->reorder, counts_.reordered) ? kReorderDelay_s : 0.0;
   std::vector<Delivery> deliveries;
-  for (int copies = happens(rule->duplicate, counts_.duplicated) ? 2 : 1; copies > 0; --copies) {
-    const double delay_s = uniform(rule->least_delay_s, rule->most_delay_s) + held_back_s;
+  for (int copies = draw(rule->duplicate, counts_.duplicated) ? 2 : 1; copies > 0; --copies) {
+    const double delay_s = uniform(rule->least_delay_s, rule->most_delay_s) + reorder_delay_s;
     deliveries.push_back({now_s + delay_s, channel, bytes});
   }
   return deliveries;

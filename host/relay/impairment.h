@@ -8,17 +8,17 @@
 
 namespace sidestep::relay {
 
-/// What happens to the messages of some channels; shares are from 0 to 1.
+/// Impairment of the messages of some channels. Each value without a unit is the share of the messages, 0 to 1.
 struct Rule {
   std::regex channel;
   double drop = 0.0;
   double duplicate = 0.0;
-  double reorder = 0.0;  ///< held back for so long that later ones overtake it
+  double reorder = 0.0;  ///< delayed until later messages have overtaken it
   double corrupt = 0.0;
   double least_delay_s = 0.0, most_delay_s = 0.0;
 };
 
-/// Reads "CHANNEL:drop=0.1,delay=0.005..0.05"; CHANNEL is a regular expression. Throws std::runtime_error with one
+/// Parses "CHANNEL:drop=0.1,delay=0.005..0.05"; CHANNEL is a regular expression. Throws std::runtime_error with one
 /// line.
 Rule parse_rule(const std::string& text);
 
@@ -32,19 +32,20 @@ struct Counts {
   int64_t received = 0, dropped = 0, duplicated = 0, reordered = 0, corrupted = 0;
 };
 
-/// A bad network: the same seed and the same messages give the same mischief.
+/// Model of a bad network. The same seed and the same messages give the same deliveries.
 class Impairment {
  public:
   Impairment(std::vector<Rule> rules, unsigned seed) : rules_(std::move(rules)), random_(seed) {}
 
-  /// What becomes of a message: nothing, one delivery or two. The first rule that fits its channel applies; none: it
-  /// passes unharmed.
+  /// The deliveries of a message: none, one or two. The first rule that matches the channel applies; without one the
+  /// message is delivered unchanged at once.
   std::vector<Delivery> deliver(const std::string& channel, std::vector<uint8_t> bytes, double now_s);
 
   const Counts& counts() const { return counts_; }
 
  private:
-  bool happens(double share, int64_t& count);
+  /// Draws whether an impairment with this share happens, and counts it.
+  bool draw(double share, int64_t& count);
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   void corrupt(std::vector<uint8_t>& bytes);
 

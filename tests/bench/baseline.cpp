@@ -8,7 +8,7 @@
 namespace sidestep::bench {
 namespace {
 
-/// The distances of the moving links to all spheres and of links to one another, with where and in which direction.
+/// Measures the moving links against all spheres and the self-pairs: distance, nearest points and normal.
 void measure_all(const Model& model, const LinkPoses& poses, const ObstacleSet& spheres,
                  std::vector<Proximity>& pairs) {
   BoundedList<Capsule, kMaxShapes> links;
@@ -22,7 +22,7 @@ void measure_all(const Model& model, const LinkPoses& poses, const ObstacleSet& 
   for (const auto& [a, b] : model.self_pairs) pairs.push_back(measure_pair(links[a], links[b]));
 }
 
-/// The least distance alone, with one root and no more a pair.
+/// The least distance of the moving links to the spheres, without nearest points; one square root a pair.
 double nearest_sphere_m(const Arm& arm, const LinkPoses& poses, const ObstacleSet& spheres) {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const LinkShape& shape : arm.shapes) {
@@ -49,14 +49,15 @@ JointVector toward(const LinkPoses& poses, const Vector3& target_m) {
 
 }  // namespace
 
-void BareCycle::run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres, const Vector3& target_m) {
+void BaselineCycle::run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres,
+                        const Vector3& target_m) {
   const LinkPoses poses = forward_kinematics(model.arm, q_rad);
   measure_all(model, poses, spheres, pairs);
   velocity_radps = toward(poses, target_m);
 }
 
-void BarestCycle::run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres,
-                      const Vector3& target_m) {
+void DistanceOnlyCycle::run(const Model& model, const JointVector& q_rad, const ObstacleSet& spheres,
+                            const Vector3& target_m) {
   const LinkPoses poses = forward_kinematics(model.arm, q_rad);
   nearest_m = nearest_sphere_m(model.arm, poses, spheres);
   velocity_radps = toward(poses, target_m);

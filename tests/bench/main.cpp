@@ -1,11 +1,10 @@
-// What a control cycle costs: CPU time of step() beside the bare computation, among moving spheres.
-#include <time.h>
-
+// CPU time of step() among moving spheres, compared with the baseline and with distance only (baseline.h).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
+#include "firmware/base/realtime.h"
 #include "tests/bench/baseline.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -17,8 +16,8 @@ namespace {
 
 constexpr double kLargestSpeed_mps = 0.3;
 constexpr double kTargetCircle_m = 0.15, kTargetRate_radps = 0.5;
-constexpr int kCalls = 5;         // between two looks at the clock, which take as long as a small cycle
-constexpr int kRepeats = 2;       // of these; the least counts
+constexpr int kCalls = 5;         // between two readings of the clock, which take as long as a small cycle
+constexpr int kRepeats = 2;       // of these calls; the least time counts
 constexpr int kStartCycles = 60;  // until the controller tracks
 
 struct Box {
@@ -28,19 +27,17 @@ const Box kWorkspace{Vector3(-1, -1, 0), Vector3(1, 1, 1.3)};
 const Box kRoom{Vector3(-5, -5, 0), Vector3(5, 5, 3)};
 
 struct Scene {
-  const char* where;
+  const char* place;
   int spheres;
   const Box& box;
   int cycles;
 };
 
 double cpu_us() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
+  return 1e6 * thread_cpu_s();
 }
 
-/// Of one call.
+/// CPU time of one call.
 template <typename Call>
 double least_us(const Call& call) {
   double least = std::numeric_limits<double>::infinity();
@@ -52,7 +49,7 @@ double least_us(const Call& call) {
   return least;
 }
 
-/// Adds up where the time of step() goes, without what the looks at the clock take.
+/// Sums the CPU time of each stage of step(), without the time of reading the clock.
 class StageTimes : public StageProbe {
  public:
   StageTimes() {
@@ -73,7 +70,7 @@ class StageTimes : public StageProbe {
   std::array<double, kStages> sum_us_{};
 };
 
-/// One value of every cycle.
+/// One value for every cycle.
 struct Values {
   std::vector<double> all;
 
@@ -84,9 +81,9 @@ struct Values {
   double mean() const { return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()); }
 };
 
-void print(const Scene& scene, const char* what, Values& us) {
-  std::printf("%-11s %5d  %-10s %9.2f %9.2f %9.2f %9.2f", scene.where, scene.spheres, what, us.at(0.5), us.mean(),
-              us.at(0.99), us.at(1.0));
+void print(const Scene& scene, const char* computation, Values& us) {
+  std::printf("%-11s %5d  %-13s %9.2f %9.2f %9.2f %9.2f", scene.place, scene.spheres, computation, us.at(0.5),
+              us.mean(), us.at(0.99), us.at(1.0));
 }
 
 void scatter(const Scene& scene, test::ClosedLoop& loop) {
@@ -116,19 +113,19 @@ void lead_target(double now_s, Target& target) {
 }
 
 struct Measured {
-  Values barest_us, bare_us, step_us;
-  Values times_barest, times_bare;  ///< within one cycle, where the machine is equally fast for both
+  Values distance_only_us, baseline_us, step_us;
+  Values times_distance_only, times_baseline;  ///< ratios within one cycle, in which the machine's speed is the same
   StageTimes stages;
 };
 
-/// A closed loop with an ideal arm; every message is of the present cycle.
+/// Runs a closed loop with an ideal arm; every cycle has new messages.
 Measured measure(const Scene& scene, const char* law) {
   test::ClosedLoop loop(test::lwa3_model(law), test::home_rad());
   loop.target_speaks = true;
   scatter(scene, loop);
   Measured measured;
-  bench::BarestCycle distance_only;
-  bench::BareCycle baseline;
+  bench::DistanceOnlyCycle distance_only;
+  bench::BaselineCycle baseline;
   for (int cycle = -kStartCycles; cycle < scene.cycles; ++cycle) {
     bounce(scene.box, *loop.obstacles);
     lead_target(loop.now_s(), loop.target);
@@ -139,14 +136,14 @@ Measured measure(const Scene& scene, const char* law) {
         computation.run(loop.model, loop.arm.position_rad, *inputs.obstacles.message, loop.target.position_m);
       });
     };
-    const double barest_us = time_us(distance_only), bare_us = time_us(baseline);
+    const double distance_only_us = time_us(distance_only), baseline_us = time_us(baseline);
     const double step_us = least_us([&] { result = step(loop.model, loop.state, inputs, loop.now_s()); });
     if (cycle >= 0) {
-      measured.barest_us.all.push_back(barest_us);
-      measured.bare_us.all.push_back(bare_us);
+      measured.distance_only_us.all.push_back(distance_only_us);
+      measured.baseline_us.all.push_back(baseline_us);
       measured.step_us.all.push_back(step_us);
-      measured.times_barest.all.push_back(step_us / barest_us);
-      measured.times_bare.all.push_back(step_us / bare_us);
+      measured.times_distance_only.all.push_back(step_us / distance_only_us);
+      measured.times_baseline.all.push_back(step_us / baseline_us);
       measured.stages.start();
       step(loop.model, loop.state, inputs, loop.now_s(), &measured.stages);
     }
@@ -157,16 +154,16 @@ Measured measure(const Scene& scene, const char* law) {
 
 void print_scene(const Scene& scene) {
   Measured paper = measure(scene, "paper"), sidestep = measure(scene, "sidestep");
-  print(scene, "barest", sidestep.barest_us);
+  print(scene, "distance only", sidestep.distance_only_us);
   std::printf("\n");
-  print(scene, "bare", sidestep.bare_us);
+  print(scene, "baseline", sidestep.baseline_us);
   std::printf("\n");
   print(scene, "paper", paper.step_us);
   std::printf("\n");
   print(scene, "sidestep", sidestep.step_us);
   const auto percent = [&](Stage stage) { return 100.0 * sidestep.stages.share(stage); };
-  std::printf("  %5.2f / %5.2f  %5.2f / %5.2f  %3.0f / %3.0f / %3.0f\n", sidestep.times_barest.at(0.5),
-              sidestep.times_barest.mean(), sidestep.times_bare.at(0.5), sidestep.times_bare.mean(),
+  std::printf("  %11.2f / %5.2f  %6.2f / %5.2f  %3.0f / %3.0f / %3.0f\n", sidestep.times_distance_only.at(0.5),
+              sidestep.times_distance_only.mean(), sidestep.times_baseline.at(0.5), sidestep.times_baseline.mean(),
               percent(Stage::kClearance), percent(Stage::kLaw), percent(Stage::kShield));
   std::fflush(stdout);
 }
@@ -174,9 +171,9 @@ void print_scene(const Scene& scene) {
 }  // namespace
 
 int main() {
-  std::printf("CPU time of one control cycle, us\n");
-  std::printf("%-11s %5s  %-10s %9s %9s %9s %9s  %13s  %13s  %s\n", "spheres", "", "", "median", "mean", "p99", "worst",
-              "times barest", "times bare", "clearance / law / shield, %");
+  std::printf("CPU time of one control cycle, us; ratios of step() as median / mean\n");
+  std::printf("%-11s %5s  %-13s %9s %9s %9s %9s  %19s  %14s  %s\n", "spheres", "", "", "median", "mean", "p99", "max",
+              "times distance only", "times baseline", "clearance / law / shield, %");
   for (const int spheres : {10, 50, 500, 4096}) {
     const int cycles = spheres <= 50 ? 4000 : 300;
     print_scene({"in the room", spheres, kRoom, cycles});

@@ -1,4 +1,4 @@
-// The controller as a library: the same cycle as everywhere, behind a header that shows nothing of it.
+// The controller as a library: the same control cycle behind a header without dependencies.
 #include "firmware/library/sidestep.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 const char kConfig[] = "firmware/config/lwa3.yaml";
 
-/// The library moves an ideal arm; everything public may be changed between two cycles.
+/// A closed loop of the library and an ideal arm. Public members may be changed between two cycles.
 struct Loop {
   explicit Loop(Controller::Foresight foresight = Controller::Foresight::kWithinStep) : controller(kConfig, foresight) {
     const JointVector start_rad = test::at_home("sidestep").arm.position_rad;
@@ -28,7 +28,7 @@ struct Loop {
 
   void cycle() {
     now_s += controller.period_s();
-    if (obstacles_speak) controller.set_obstacles(&sphere, 1, now_s);
+    if (sends_obstacles) controller.set_obstacles(&sphere, 1, now_s);
     controller.set_target(target, now_s);
     last = controller.step(arm, now_s);
     for (size_t i = 0; i < 7; ++i) {
@@ -39,7 +39,7 @@ struct Loop {
   void run(double duration_s) {
     for (double end_s = now_s + duration_s; now_s < end_s;) cycle();
   }
-  bool says(const char* words) const { return std::string(last.message).find(words) != std::string::npos; }
+  bool reports(const char* text) const { return std::string(last.message).find(text) != std::string::npos; }
 
   Controller controller;
   Controller::ArmState arm;
@@ -47,10 +47,10 @@ struct Loop {
   Controller::Obstacle sphere;
   Controller::Result last;
   double now_s = 0.0;
-  bool obstacles_speak = true;
+  bool sends_obstacles = true;
 };
 
-void it_commands_what_the_cycle_commands(void**) {
+void the_library_commands_the_same_as_step(void**) {
   Loop loop(Controller::Foresight::kOff);
   test::ClosedLoop same = test::at_home("sidestep");
   same.target_speaks = true;
@@ -60,20 +60,20 @@ void it_commands_what_the_cycle_commands(void**) {
     same.cycle();
     for (int i = 0; i < 7; ++i)
       check(loop.last.velocity_radps[static_cast<size_t>(i)] == same.last.command.velocity_radps[i],
-            "cycle %d, joint %d: %.17g, the cycle has %.17g", k, i, loop.last.velocity_radps[static_cast<size_t>(i)],
+            "cycle %d, joint %d: %.17g, step() commands %.17g", k, i, loop.last.velocity_radps[static_cast<size_t>(i)],
             same.last.command.velocity_radps[i]);
   }
   assert_int_equal(static_cast<int>(loop.last.mode), static_cast<int>(Controller::Mode::kTrack));
   check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
 }
 
-void foresight_on_a_thread_of_its_own_does_no_harm(void**) {
+void the_arm_arrives_with_foresight_on_a_thread(void**) {
   Loop loop(Controller::Foresight::kOnThread);
   loop.run(2.0);
   check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
 }
 
-void all_three_shapes_keep_their_distance(void**) {
+void the_arm_keeps_clear_of_all_three_shapes(void**) {
   for (const auto shape : {Controller::Shape::kSphere, Controller::Shape::kCapsule, Controller::Shape::kBox}) {
     Loop loop;
     loop.sphere.shape = shape;
@@ -103,7 +103,7 @@ void a_pose_is_tracked(void**) {
   check(off_rad < 1e-2 && loop.last.target_distance_m < 1e-3, "%g rad, %g m", off_rad, loop.last.target_distance_m);
 }
 
-void what_cannot_be_true_is_refused_and_the_last_counts(void**) {
+void invalid_inputs_are_rejected_and_the_last_valid_ones_are_used(void**) {
   Loop loop;
   loop.run(1.0);
   Controller::Target target = loop.target;
@@ -124,23 +124,23 @@ void what_cannot_be_true_is_refused_and_the_last_counts(void**) {
   check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
 }
 
-void neighbours_that_it_could_not_hear_are_refused(void**) {
+void a_configuration_with_neighbours_is_rejected(void**) {
   const std::string text = test::replaced(test::text_of(kConfig), "listen: []", "listen: [LINKS_2]");
   const std::string file = test::scratch_file("neighbours.yaml", text);
-  const std::string said = test::message_of([&] { Controller(file, Controller::Foresight::kOff); });
-  check(test::one_line_with(said, {file.c_str(), "neighbours.listen"}), "'%s'", said.c_str());
+  const std::string message = test::message_of([&] { Controller(file, Controller::Foresight::kOff); });
+  check(test::one_line_with(message, {file.c_str(), "neighbours.listen"}), "'%s'", message.c_str());
 }
 
-void without_obstacle_sets_it_brakes_and_says_so(void**) {
+void without_obstacle_sets_the_controller_brakes_and_reports_it(void**) {
   Loop loop;
   loop.run(0.8);
-  loop.obstacles_speak = false;
+  loop.sends_obstacles = false;
   loop.run(0.5);
   assert_int_equal(static_cast<int>(loop.last.mode), static_cast<int>(Controller::Mode::kBrake));
-  check(loop.says("obstacles"), "it says '%s'", loop.last.message);
+  check(loop.reports("obstacles"), "the message is '%s'", loop.last.message);
 }
 
-void a_step_without_an_arm_state_is_bridged_and_many_are_a_fault(void**) {
+void one_step_without_arm_state_is_bridged_and_many_are_a_fault(void**) {
   Loop loop;
   loop.run(0.7);
   loop.last = loop.controller.step(loop.now_s += 0.01);
@@ -152,7 +152,7 @@ void a_step_without_an_arm_state_is_bridged_and_many_are_a_fault(void**) {
   assert_int_equal(static_cast<int>(loop.last.mode), static_cast<int>(Controller::Mode::kFault));
 }
 
-void asked_to_stop_it_comes_to_rest(void**) {
+void stop_brakes_to_rest(void**) {
   Loop loop;
   loop.run(0.8);
   assert_true(loop.arm.velocity_radps != Controller::Joints{});
@@ -169,26 +169,26 @@ void only_the_constructor_allocates(void**) {
   assert_int_equal(test::allocation_count() - before, 0);
 }
 
-void a_bad_configuration_is_named(void**) {
-  const std::string words = test::message_of([] { Controller controller("no/such/file.yaml"); });
-  check(words.find("no/such/file.yaml") != std::string::npos, "it says '%s'", words.c_str());
+void the_message_names_a_missing_configuration(void**) {
+  const std::string message = test::message_of([] { Controller controller("no/such/file.yaml"); });
+  check(message.find("no/such/file.yaml") != std::string::npos, "the message is '%s'", message.c_str());
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(it_commands_what_the_cycle_commands),
-      cmocka_unit_test(foresight_on_a_thread_of_its_own_does_no_harm),
-      cmocka_unit_test(all_three_shapes_keep_their_distance),
+      cmocka_unit_test(the_library_commands_the_same_as_step),
+      cmocka_unit_test(the_arm_arrives_with_foresight_on_a_thread),
+      cmocka_unit_test(the_arm_keeps_clear_of_all_three_shapes),
       cmocka_unit_test(a_pose_is_tracked),
-      cmocka_unit_test(what_cannot_be_true_is_refused_and_the_last_counts),
-      cmocka_unit_test(neighbours_that_it_could_not_hear_are_refused),
-      cmocka_unit_test(without_obstacle_sets_it_brakes_and_says_so),
-      cmocka_unit_test(a_step_without_an_arm_state_is_bridged_and_many_are_a_fault),
-      cmocka_unit_test(asked_to_stop_it_comes_to_rest),
+      cmocka_unit_test(invalid_inputs_are_rejected_and_the_last_valid_ones_are_used),
+      cmocka_unit_test(a_configuration_with_neighbours_is_rejected),
+      cmocka_unit_test(without_obstacle_sets_the_controller_brakes_and_reports_it),
+      cmocka_unit_test(one_step_without_arm_state_is_bridged_and_many_are_a_fault),
+      cmocka_unit_test(stop_brakes_to_rest),
       cmocka_unit_test(only_the_constructor_allocates),
-      cmocka_unit_test(a_bad_configuration_is_named),
+      cmocka_unit_test(the_message_names_a_missing_configuration),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

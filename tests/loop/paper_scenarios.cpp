@@ -14,7 +14,7 @@ struct Scenario {
   Vector3 target_m, target_mps;
   bool has_obstacles;
   double duration_s;
-  double judged_s;  ///< when the error of paper-notes' table was logged
+  double error_at_s;  ///< time at which the error in the table of paper-notes.md was taken
 };
 
 const Scenario kA{"A", {0, 0.15, 1.0}, {0, 0.2, 0}, false, 2.3, 2.28};
@@ -22,8 +22,8 @@ const Scenario kB{"B", {0.4, 0.4, 0.8}, {0, 0, 0}, true, 8.0, 7.99};
 const Scenario kC{"C", {0.1, 0.4, 0.8}, {0.2, 0, 0}, true, 2.8, 2.79};
 
 struct Figures {
-  double error_m = 0.0;            ///< tool to target when judged
-  double least_axis_m = HUGE_VAL;  ///< obstacle's centre to the axis of a moving link
+  double error_m = 0.0;            ///< tool to target at error_at_s
+  double least_axis_m = HUGE_VAL;  ///< least distance from an obstacle's centre to the axis of a moving link
   double fastest_radps = 0.0;
 };
 
@@ -39,8 +39,8 @@ double least_axis_distance_m(const ClosedLoop& loop) {
   return least_m;
 }
 
-/// Plays a simulation of the paper; its t = 0 is the first cycle that tracks.
-Figures play(const Scenario& scenario, const PaperGains& gains) {
+/// Runs a simulation of the paper; its t = 0 is the first cycle that tracks.
+Figures simulate(const Scenario& scenario, const PaperGains& gains) {
   Model model = test::lwa3_model("paper");
   model.settings.paper = gains;
   ClosedLoop loop(model, test::home_rad());
@@ -58,7 +58,7 @@ Figures play(const Scenario& scenario, const PaperGains& gains) {
     figures.least_axis_m = std::min(figures.least_axis_m, least_axis_distance_m(loop));
     loop.cycle();
     check(loop.mode() == Mode::kTrack, "cycle %d: %s", cycle, loop.last.report.message);
-    if (cycle == std::lround(scenario.judged_s * 100)) figures.error_m = loop.last.report.target_distance_m;
+    if (cycle == std::lround(scenario.error_at_s * 100)) figures.error_m = loop.last.report.target_distance_m;
     figures.fastest_radps = std::max(figures.fastest_radps, loop.arm.velocity_radps.cwiseAbs().maxCoeff());
   }
   check(loop.commands.complaint().empty(), "%s: %s", scenario.name, loop.commands.complaint().c_str());
@@ -75,14 +75,14 @@ PaperGains gains_of(double k_pos, double k_vel, ToolVelocity tool_velocity) {
 
 struct Expected {
   const Scenario* scenario;
-  double error_mm, least_axis_m, fastest_radps;  ///< least distance 0: none
+  double error_mm, least_axis_m, fastest_radps;  ///< least_axis_m 0: no obstacles
 };
 
-/// Holds one row of the table of paper-notes.md, "Force to velocity": errors within 1 % or 0.01 mm, distances to the
-/// printed digit.
+/// Checks one row of the table in paper-notes.md, "Force to velocity": errors within 1 % or 0.01 mm, distances to the
+/// last printed digit.
 void check_row(const char* reading, const PaperGains& gains, const std::vector<Expected>& row) {
   for (const Expected& expected : row) {
-    const Figures figures = play(*expected.scenario, gains);
+    const Figures figures = simulate(*expected.scenario, gains);
     const char* name = expected.scenario->name;
     print_message("%s, %s: error %.2f mm, least distance %.4f m, fastest joint %.2f rad/s\n", reading, name,
                   figures.error_m * 1e3, figures.least_axis_m, figures.fastest_radps);
@@ -94,17 +94,17 @@ void check_row(const char* reading, const PaperGains& gains, const std::vector<E
   }
 }
 
-void measured_velocity_gives_the_figures_of_the_table(void**) {
+void results_with_measured_velocity_match_the_table(void**) {
   check_row("measured", gains_of(20, 8.94, ToolVelocity::kMeasured),
             {{&kA, 12.09, 0, 1.22}, {&kB, 0.0, 0.1394, 1.21}, {&kC, 65.59, 0.1467, 2.00}});
 }
 
-void softer_gains_give_the_figures_of_the_table(void**) {
+void results_with_softer_gains_match_the_table(void**) {
   check_row("k_pos 10", gains_of(10, 6.32, ToolVelocity::kMeasured),
             {{&kA, 23.53, 0, 1.21}, {&kB, 0.0, 0.1599, 1.08}, {&kC, 125.46, 0.1656, 2.00}});
 }
 
-void planned_velocity_gives_the_figures_of_the_table(void**) {
+void results_with_planned_velocity_match_the_table(void**) {
   check_row("planned", gains_of(20, 8.94, ToolVelocity::kPlanned),
             {{&kA, 0.75, 0, 1.61}, {&kB, 0.0, 0.0980, 1.85}, {&kC, 5.14, 0.1030, 2.00}});
 }
@@ -113,9 +113,9 @@ void planned_velocity_gives_the_figures_of_the_table(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(measured_velocity_gives_the_figures_of_the_table),
-      cmocka_unit_test(softer_gains_give_the_figures_of_the_table),
-      cmocka_unit_test(planned_velocity_gives_the_figures_of_the_table),
+      cmocka_unit_test(results_with_measured_velocity_match_the_table),
+      cmocka_unit_test(results_with_softer_gains_match_the_table),
+      cmocka_unit_test(results_with_planned_velocity_match_the_table),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -11,24 +11,24 @@ using test::ClosedLoop;
 
 namespace {
 
-/// The loop's obstacles and the model's surroundings as the simulator's judge sees them.
+/// The loop's obstacles and the model's surroundings as obstacles of the simulator.
 std::vector<sim::Obstacle> solids(const ClosedLoop& loop) {
   std::vector<sim::Obstacle> solids;
   const ObstacleView all{loop.obstacles.get(), 0.0, 0.0, &loop.model.surroundings};
   for (int i = 0; i < all.count(); ++i) {
-    const test::PlacedSolid transformed = test::placed_solid(all.at(i));
+    const test::PlacedSolid placed = test::placed_solid(all.at(i));
     sim::Obstacle& obstacle = solids.emplace_back();
-    obstacle.solid = transformed.solid;
-    obstacle.motion.position_m = transformed.base_from_solid.translation();
-    obstacle.motion.orientation = transformed.base_from_solid.linear();
+    obstacle.solid = placed.solid;
+    obstacle.motion.position_m = placed.base_from_solid.translation();
+    obstacle.motion.orientation = placed.base_from_solid.linear();
   }
   return solids;
 }
 
-/// What FCL says of the arm as its URDF describes it.
-class Judge {
+/// True clearance of the arm as its URDF describes it, by FCL.
+class TrueClearance {
  public:
-  double clearance_m(const ClosedLoop& loop) {
+  double measure_m(const ClosedLoop& loop) {
     truth_.place(loop.arm.position_rad);
     return truth_.nearest(solids(loop)).clearance_m;
   }
@@ -48,29 +48,29 @@ struct Figures {
   double final_distance_m = 0.0;
 };
 
-/// Runs on; move() steers what does not go straight, before every cycle.
+/// Runs the loop. move(t_s) updates obstacles that do not move on a straight line before every cycle.
 template <typename Move>
-Figures play(ClosedLoop& loop, double duration_s, const Move& move) {
-  Judge judge;
+Figures simulate(ClosedLoop& loop, double duration_s, const Move& move) {
+  TrueClearance clearance;
   Figures figures;
   for (double t_s = 0.0; t_s < duration_s; t_s += loop.model.settings.period_s()) {
     move(t_s);
     loop.cycle();
-    figures.least_m = std::min(figures.least_m, judge.clearance_m(loop));
+    figures.least_m = std::min(figures.least_m, clearance.measure_m(loop));
   }
   test::check_stream(loop);
   figures.final_distance_m = loop.last.report.target_distance_m;
   return figures;
 }
 
-/// A door leaf on a hinge, which swings through the place where the arm is and back.
-void a_door_that_swings_at_the_arm_never_touches_it(void**) {
+/// The leaf swings about its hinge through the arm's position and back.
+void a_swinging_door_never_touches_the_arm(void**) {
   ClosedLoop loop = test::tracking("sidestep");
   const Vector3 hinge(-0.75, -0.75, 0.75);
   const double width_m = 0.7, fastest_radps = 0.8;
   Obstacle& door =
       add(loop, box_obstacle(hinge + Vector3(-0.5 * width_m, 0, 0), Matrix3::Identity(), Vector3(width_m, 0.04, 1.5)));
-  const Figures figures = play(loop, 8.0, [&](double t_s) {
+  const Figures figures = simulate(loop, 8.0, [&](double t_s) {
     const double angle = -1.1 * (1.0 - std::cos(fastest_radps / 1.1 * t_s));
     const double rate_radps = -fastest_radps * std::sin(fastest_radps / 1.1 * t_s);
     const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitZ()).toRotationMatrix();
@@ -85,7 +85,7 @@ void a_door_that_swings_at_the_arm_never_touches_it(void**) {
   check(figures.least_m > 0.0, "%g m", figures.least_m);
 }
 
-/// A revolving door with two leaves right beside the arm.
+/// The door has two leaves and revolves close to the arm.
 void a_revolving_door_never_touches_the_arm(void**) {
   ClosedLoop loop = test::tracking("sidestep");
   for (const double angle : {M_PI / 4, -M_PI / 4}) {
@@ -93,13 +93,13 @@ void a_revolving_door_never_touches_the_arm(void**) {
     add(loop, box_obstacle(Vector3(-0.75, 0, 1.0), turn, Vector3(1.0, 0.04, 1.2))).angular_velocity_radps =
         Vector3(0, 0, 0.7);
   }
-  const Figures figures = play(loop, 9.0, [](double) {});
+  const Figures figures = simulate(loop, 9.0, [](double) {});
   print_message("revolving door: %.1f mm\n", figures.least_m * 1e3);
   check(figures.least_m > 0.0, "%g m", figures.least_m);
 }
 
-/// Trunk, head and two arms that swing.
-void a_person_who_walks_past_is_never_touched(void**) {
+/// The person consists of trunk, head and two swinging arms.
+void a_person_walking_past_is_never_touched(void**) {
   ClosedLoop loop = test::tracking("sidestep");
   const Vector3 walk(0, 0.6, 0), start(-0.75, -2.0, 0);
   const auto limb = [&](const Vector3& place, double radius_m, double length_m) -> Obstacle& {
@@ -110,7 +110,7 @@ void a_person_who_walks_past_is_never_touched(void**) {
   limb(Vector3(0, 0, 1.0), 0.16, 0.5);
   limb(Vector3(0, 0, 1.55), 0.12, 0.05);
   Obstacle *left = &limb(Vector3(-0.25, 0, 1.0), 0.05, 0.55), *right = &limb(Vector3(0.25, 0, 1.0), 0.05, 0.55);
-  const Figures figures = play(loop, 7.0, [&](double t_s) {
+  const Figures figures = simulate(loop, 7.0, [&](double t_s) {
     const double rate_radps = 1.5 * std::cos(4.0 * t_s);
     left->angular_velocity_radps = Vector3(rate_radps, 0, 0);
     right->angular_velocity_radps = Vector3(-rate_radps, 0, 0);
@@ -120,21 +120,21 @@ void a_person_who_walks_past_is_never_touched(void**) {
   check(figures.final_distance_m < 0.01, "%g m from the target in the end", figures.final_distance_m);
 }
 
-/// Not a word about the table on the wire: the arm goes round it to a target below its top.
-void a_table_of_the_configuration_is_never_touched(void**) {
+/// No message contains the table. The target is inside it.
+void a_table_in_the_configuration_is_never_touched(void**) {
   Model model = test::lwa3_model("sidestep");
   model.surroundings = {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))};
   ClosedLoop loop(model, test::home_rad());
   loop.target.position_m = Vector3(-0.7, 0.1, 0.34);  // in the table
   loop.target_speaks = true;
-  const Figures figures = play(loop, 6.0, [](double) {});
+  const Figures figures = simulate(loop, 6.0, [](double) {});
   print_message("table: %.1f mm\n", figures.least_m * 1e3);
   check(figures.least_m > 0.0, "%g m", figures.least_m);
-  check(figures.least_m < 0.03, "never came near: %g m", figures.least_m);
+  check(figures.least_m < 0.03, "the arm never came near the table: %g m", figures.least_m);
 }
 
-/// What stands in the configuration is kept clear of at once, but the arm waits for word of what may move.
-void surroundings_do_not_make_obstacles_known(void**) {
+/// The arm keeps clear of surroundings from the start, but it does not track before the first obstacle set.
+void surroundings_do_not_replace_the_first_obstacle_set(void**) {
   Model model = test::lwa3_model("sidestep");
   model.surroundings = {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))};
   model.surroundings[0].id = -2;
@@ -151,11 +151,11 @@ void surroundings_do_not_make_obstacles_known(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_door_that_swings_at_the_arm_never_touches_it),
+      cmocka_unit_test(a_swinging_door_never_touches_the_arm),
       cmocka_unit_test(a_revolving_door_never_touches_the_arm),
-      cmocka_unit_test(a_person_who_walks_past_is_never_touched),
-      cmocka_unit_test(a_table_of_the_configuration_is_never_touched),
-      cmocka_unit_test(surroundings_do_not_make_obstacles_known),
+      cmocka_unit_test(a_person_walking_past_is_never_touched),
+      cmocka_unit_test(a_table_in_the_configuration_is_never_touched),
+      cmocka_unit_test(surroundings_do_not_replace_the_first_obstacle_set),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -8,7 +8,7 @@ thread_local int64_t count = 0;
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-// As in sanitizer/allocator_interface.h, which not every compiler brings along.
+// Declared as in sanitizer/allocator_interface.h, which not every compiler has.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, size_t),
                                                          void (*on_free)(const volatile void*));
 
@@ -17,7 +17,7 @@ const int kHooked = __sanitizer_install_malloc_and_free_hooks([](const volatile 
                                                               [](const volatile void*) {});
 }
 #else
-// The allocator of the GNU C library under its own names.
+// The internal names of the GNU C library's allocator.
 extern "C" {
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);

@@ -4,8 +4,8 @@
 
 namespace sidestep::test {
 
-/// How often this thread has asked for memory: malloc, calloc, realloc, aligned_alloc and all that ends there (operator
-/// new, Eigen). A binary that calls this gets counting versions of them instead of the C library's.
+/// Number of memory allocations of this thread: malloc, calloc, realloc, aligned_alloc and everything that calls them
+/// (operator new, Eigen). A binary that links this function gets counting versions of them instead of the C library's.
 int64_t allocation_count();
 
 }  // namespace sidestep::test

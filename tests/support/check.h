@@ -11,13 +11,13 @@
 extern "C" {
 #include <cmocka.h>
 }
-// Macros of cmocka that would rewrite members of other classes.
+// Macros of cmocka that would replace members of other classes.
 #undef fail
 #undef skip
 
 // A failing check leaves its test by longjmp: destructors do not run. An exception that escapes a test ends the binary.
 
-/// Fails unless the condition holds; says why in printf's words.
+/// Fails the test unless the condition holds; the further arguments are printf's and explain the failure.
 #define check(condition, ...)          \
   do {                                 \
     if (!(condition)) {                \
@@ -28,8 +28,9 @@ extern "C" {
     }                                  \
   } while (false)
 
-/// Two numbers, or all elements of two Eigen matrices, agree within the tolerance. (cmocka compares doubles as floats.)
-#define check_near(actual, expected, tolerance) check_near_because(actual, expected, tolerance, "no more to say")
+/// Fails the test unless two numbers, or all elements of two Eigen matrices, agree within the tolerance. (cmocka
+/// compares doubles as floats.)
+#define check_near(actual, expected, tolerance) check_near_because(actual, expected, tolerance, "no further details")
 
 #define check_near_because(actual, expected, tolerance, ...)                                       \
   do {                                                                                             \
@@ -62,18 +63,18 @@ double gap(const A& actual, const B& expected) {
   return largest;
 }
 
-/// What a function throws, as text; empty when it throws nothing.
+/// The message of the exception that a function throws; empty if it throws none.
 template <typename Function>
 std::string message_of(Function&& function) {
   try {
     function();
   } catch (const std::exception& error) {
-    return *error.what() ? error.what() : "(an exception without words)";
+    return *error.what() ? error.what() : "(an exception without a message)";
   }
   return {};
 }
 
-/// A text that is one line and holds all of the parts.
+/// Whether the text is one line and contains all of the parts.
 inline bool one_line_with(const std::string& text, std::initializer_list<std::string> parts) {
   if (text.empty() || text.find('\n') != std::string::npos) return false;
   for (const std::string& part : parts)

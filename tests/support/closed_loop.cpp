@@ -43,7 +43,7 @@ void ClosedLoop::follow(const Result& result) {
     commands.feed(result.command.position_rad, result.command.velocity_radps);
     arm.velocity_radps = result.command.velocity_radps;
   } else {
-    // After a fault for a contradictory arm nobody knows where the arm is; then the stream may end at once.
+    // After a fault for an inconsistent arm state the arm's true state is unknown; then the stream may end in motion.
     if (was_commanding && result.report.fault != Fault::kArmStateInconsistent) commands.end();
     arm.velocity_radps.setZero();
   }

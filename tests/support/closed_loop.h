@@ -8,11 +8,11 @@
 
 namespace sidestep::test {
 
-/// The LWA3's configuration with a law of choice.
+/// The LWA3's configuration with this law.
 Model lwa3_model(const std::string& law);
 
-/// A controller, an ideal arm and a world in one process, period by period on a clock of their own. Everything public
-/// may be changed between two cycles. The world moves on whether or not it is reported.
+/// An in-process closed loop of step(), an ideal arm, a target and obstacles with a simulated clock. Public members may
+/// be changed between two cycles. Target and obstacles move whether or not they are sent.
 class ClosedLoop {
  public:
   ClosedLoop(const Model& model, const JointVector& start_rad);
@@ -20,12 +20,12 @@ class ClosedLoop {
   Model model;
   State state;
   Result last;
-  CommandCheck commands;  ///< is fed all that a real-time loop would publish
+  CommandCheck commands;  ///< checks every command that a real-time loop would publish
 
-  ArmState arm;  ///< as it is now; follows the commands, rests without them
+  ArmState arm;  ///< present state; follows the commands, rests without them
   Target target;
   std::unique_ptr<ObstacleSet> obstacles;
-  bool arm_speaks = true, target_speaks = false, obstacles_speak = true;
+  bool arm_speaks = true, target_speaks = false, obstacles_speak = true;  ///< which messages are sent
   bool stop = false;
   int skipped = 0;
   int64_t arm_clock_offset_us = 0;
@@ -35,15 +35,14 @@ class ClosedLoop {
   /// Runs until the mode is reached, for at most limit_s. Returns whether it was.
   bool run_until(Mode mode, double limit_s);
 
-  /// The two halves of a cycle around step(), for who wants to watch that alone.
+  /// The parts of cycle() before and after step(), for tests that call step() themselves.
   Inputs receive();
   void follow(const Result& result);
 
   double now_s() const { return static_cast<double>(periods_) * model.settings.period_s(); }
   Mode mode() const { return last.report.mode; }
-  bool says(const std::string& words) const {
-    return std::string(last.report.message).find(words) != std::string::npos;
-  }
+  /// Whether the report's message contains the text.
+  bool says(const std::string& text) const { return std::string(last.report.message).find(text) != std::string::npos; }
   double speed_radps() const { return arm.velocity_radps.norm(); }
 
   /// Adds a sphere and returns it.
@@ -63,13 +62,13 @@ class ClosedLoop {
   Sent<ObstacleSet> sent_obstacles_;
 };
 
-/// The LWA3 at home among no obstacles, with a target 20 cm away that is not sent yet.
+/// The LWA3 at home without obstacles, with a target 20 cm away that is not sent yet.
 ClosedLoop at_home(const std::string& law);
 
-/// The same, on its way to the target.
+/// The same, moving towards the target.
 ClosedLoop tracking(const std::string& law);
 
-/// Fails the test when a command was one that the arm cannot follow.
+/// Fails the test if the arm could not have followed one of the commands.
 void check_stream(const ClosedLoop& loop);
 
 }  // namespace sidestep::test

@@ -7,37 +7,38 @@
 
 namespace sidestep::test {
 
-/// Watches a stream of joint commands and names the first thing that an arm could not follow: a value that is not
-/// finite, a jump, a velocity, acceleration or position beyond the limits, of what is said or of how the positions
-/// move, or a position that is not where the velocity leads.
+/// Checks a stream of joint commands and reports the first violation that an arm could not follow: a value that is not
+/// finite, a jump, a velocity, acceleration or position beyond the limits (velocity and acceleration both as commanded
+/// and as differences of the positions), or a position that does not follow from the velocity.
 class CommandCheck {
  public:
   CommandCheck(const JointLimits& limits, double period_s) : limits_(limits), period_s_(period_s) {}
 
-  /// A stream begins: its first command must go on from this measured arm.
+  /// Begins a stream whose first command must continue this measured motion.
   void begin(const JointVector& position_rad, const JointVector& velocity_radps);
 
   void feed(const JointVector& position_rad, const JointVector& velocity_radps);
 
-  /// Of an arm that is pushed the commanded position follows it beside the velocity. Only that is granted.
+  /// From now on positions need not follow from the velocities. If an external force displaces the arm, the controller
+  /// corrects the commanded positions towards the measured ones. All other checks stay.
   void grant_catching_up() { catching_up_ = true; }
 
-  /// The stream ends, which it may do only at rest.
+  /// Ends the stream. The last velocity must be zero.
   void end();
 
-  /// The first complaint, with the number of the command; empty while all is well.
-  const std::string& complaint() const { return complaint_; }
+  /// The first violation with the number of the command; empty if there is none.
+  const std::string& complaint() const { return violation_; }
   int64_t fed() const { return fed_; }
 
  private:
-  void complain(const char* what, int joint, double value, double bound);
+  void report(const char* what, int joint, double value, double bound);
 
   JointLimits limits_;
   double period_s_;
-  JointVector position_rad_, velocity_radps_, rate_radps_;  ///< of the last command; the rate is of the positions
+  JointVector position_rad_, velocity_radps_, rate_radps_;  ///< of the last command; rate_radps_: position difference
   bool catching_up_ = false;
   int64_t fed_ = 0;
-  std::string complaint_;
+  std::string violation_;
 };
 
 }  // namespace sidestep::test

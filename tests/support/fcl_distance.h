@@ -5,7 +5,7 @@
 
 namespace sidestep::test {
 
-/// A solid of the simulator and where it is: obstacles as FCL sees them.
+/// A solid of the simulator at a pose.
 struct PlacedSolid {
   sim::Solid solid;
   Eigen::Isometry3d base_from_solid = Eigen::Isometry3d::Identity();
@@ -14,24 +14,24 @@ struct PlacedSolid {
 inline PlacedSolid placed_solid(const Capsule& capsule) {
   const Vector3 axis = capsule.end - capsule.start;
   const Vector3 z = axis.norm() > 0.0 ? axis.normalized() : Vector3(Vector3::UnitZ()), x = z.unitOrthogonal();
-  PlacedSolid transformed{{sim::Shape::kCapsule, Vector3(capsule.radius_m, axis.norm(), 0)}};
-  transformed.base_from_solid.linear() << x, z.cross(x), z;
-  transformed.base_from_solid.translation() = 0.5 * (capsule.start + capsule.end);
-  return transformed;
+  PlacedSolid placed{{sim::Shape::kCapsule, Vector3(capsule.radius_m, axis.norm(), 0)}};
+  placed.base_from_solid.linear() << x, z.cross(x), z;
+  placed.base_from_solid.translation() = 0.5 * (capsule.start + capsule.end);
+  return placed;
 }
 
 inline PlacedSolid placed_solid(const Box& box) {
-  PlacedSolid transformed{{sim::Shape::kBox, 2.0 * box.half_m}};
-  transformed.base_from_solid.linear() = box.axes;
-  transformed.base_from_solid.translation() = box.centre;
-  return transformed;
+  PlacedSolid placed{{sim::Shape::kBox, 2.0 * box.half_m}};
+  placed.base_from_solid.linear() = box.axes;
+  placed.base_from_solid.translation() = box.centre;
+  return placed;
 }
 
 inline PlacedSolid placed_solid(const Obstacle& obstacle) {
   return obstacle.is_box() ? placed_solid(box_of(obstacle)) : placed_solid(obstacle.capsule);
 }
 
-/// Between surfaces, as the simulator judges it, m.
+/// Distance between surfaces as the simulator computes it, m.
 template <typename A, typename B>
 double fcl_distance_m(const A& a, const B& b) {
   const PlacedSolid first = placed_solid(a), second = placed_solid(b);

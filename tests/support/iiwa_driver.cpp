@@ -47,11 +47,11 @@ IiwaDriver::IiwaDriver(const JointLimits& limits, const JointVector& start_rad, 
 void IiwaDriver::on_command(const lcm::ReceiveBuffer*, const std::string&, const drake::lcmt_iiwa_command* message) {
   if (off_ || !gave_up.empty()) return;
   const Clock::time_point now = Clock::now();
-  if (spoken_ == 0 || now - started_ < kGuard) gave_up = "a command within the guard time";
+  if (statuses_sent_ == 0 || now - started_ < kGuard) gave_up = "a command within the guard time";
   if (message->num_joints != held_rad_.size()) gave_up = "a command for another number of joints";
   if (message->num_torques != 0) gave_up = "torques in position mode";
   if (!gave_up.empty()) return;
-  // A new stream goes on from what is held, at rest.
+  // A new stream starts at the held position, at rest.
   if (now - commanded_ > kEndOfStream) commands.begin(held_rad_, JointVector::Zero(held_rad_.size()));
   commanded_ = now;
   const JointVector last_rad = held_rad_;
@@ -60,12 +60,12 @@ void IiwaDriver::on_command(const lcm::ReceiveBuffer*, const std::string&, const
   commands.feed(held_rad_, velocity_radps_);
 }
 
-void IiwaDriver::speak() {
+void IiwaDriver::send_status() {
   const int64_t now = std::chrono::duration_cast<std::chrono::microseconds>(next_.time_since_epoch()).count();
-  if (spoken_ == 0) started_ = Clock::now();
+  if (statuses_sent_ == 0) started_ = Clock::now();
   if (Clock::now() - commanded_ > kEndOfStream) velocity_radps_.setZero();
   const JointVector measured_rad = held_rad_ - JointVector::Constant(held_rad_.size(), kSag_rad);
-  const int64_t utime = spoken_++ < kStatusesWithoutTime ? -1 : now;
+  const int64_t utime = statuses_sent_++ < kStatusesWithoutTime ? -1 : now;
   peer.send("IIWA_STATUS", iiwa_status(utime, measured_rad, velocity_radps_, held_rad_));
 }
 
@@ -73,7 +73,7 @@ void IiwaDriver::tick() {
   const int64_t utime = std::chrono::duration_cast<std::chrono::microseconds>(next_.time_since_epoch()).count();
   peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
   peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(-0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));
-  if (!off_ && gave_up.empty()) speak();
+  if (!off_ && gave_up.empty()) send_status();
   next_ = std::max(next_ + kPeriod, Clock::now() - kPeriod);
   peer.listen(std::chrono::duration<double>(next_ - Clock::now()).count());
   while (lcm_.handleTimeout(0) > 0) {
@@ -98,7 +98,7 @@ void IiwaDriver::restart(double silence_s) {
   off_ = true;
   run(silence_s);
   off_ = false;
-  spoken_ = 0;
+  statuses_sent_ = 0;
 }
 
 }  // namespace sidestep::test

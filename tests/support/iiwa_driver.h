@@ -9,13 +9,13 @@
 
 namespace sidestep::test {
 
-/// A status as drake-iiwa-driver sends it: what it cannot know is NaN.
+/// A status as drake-iiwa-driver sends it; values that it does not have are NaN.
 drake::lcmt_iiwa_status iiwa_status(int64_t utime, const JointVector& measured_rad, const JointVector& velocity_radps,
                                     const JointVector& commanded_rad);
 
-/// Stands for drake-iiwa-driver with an arm, and for a small world around it, on this process's network in real time.
-/// 200 statuses a second, the first of them without a time; gives up on a command within 250 ms of the first; holds
-/// what it was told last for ever, with an arm that hangs a little lower.
+/// Real-time model of drake-iiwa-driver with an arm, a target and an obstacle, on this process's network. Sends 200
+/// statuses a second, the first 200 of them without a time. Stops on a command within 250 ms of its first status. Holds
+/// the last commanded position for ever; the measured position is 0.01 rad below the commanded one.
 class IiwaDriver {
  public:
   IiwaDriver(const JointLimits& limits, const JointVector& start_rad, const Vector3& target_m);
@@ -23,13 +23,13 @@ class IiwaDriver {
   Vector3 target_m;
   LcmPeer peer;
   CommandCheck commands;
-  std::string gave_up;  ///< why the driver has ended; empty while it runs
+  std::string gave_up;  ///< why the driver has stopped; empty while it runs
 
   void run(double duration_s);
   /// Runs until the controller's last status has this mode, for at most limit_s. Returns whether it has.
   bool run_until(int8_t mode, double limit_s);
 
-  /// It is gone for a while, then another one starts where the arm is.
+  /// Stops the driver for a while, then starts it again at the arm's position.
   void restart(double silence_s);
 
   const JointVector& held_rad() const { return held_rad_; }
@@ -38,14 +38,14 @@ class IiwaDriver {
  private:
   using Clock = std::chrono::steady_clock;
   void tick();
-  void speak();
+  void send_status();
   void on_command(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                   const drake::lcmt_iiwa_command* message);
 
   lcm::LCM lcm_;
   JointVector held_rad_, velocity_radps_;
   Clock::time_point next_, started_, commanded_{};
-  int64_t spoken_ = 0;
+  int64_t statuses_sent_ = 0;
   bool off_ = false;
 };
 

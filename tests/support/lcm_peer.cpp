@@ -9,7 +9,7 @@
 namespace sidestep::test {
 
 std::string private_lcm_url(int number) {
-  // Below the ports that the system gives to sockets of its choice: those cannot be shared.
+  // Below the ephemeral ports of the system: sockets on those cannot be shared.
   const int port = 10000 + 2 * (getpid() % 11000) + number;
   return "udpm://239.255.76." + std::to_string(67 + number) + ":" + std::to_string(port) + "?ttl=0";
 }

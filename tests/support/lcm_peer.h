@@ -12,13 +12,13 @@
 
 namespace sidestep::test {
 
-/// Networks of this process's own: multicast that stays on this machine, on ports that follow from the process id.
+/// LCM networks private to this process: multicast that stays on this machine, on ports derived from the process id.
 std::string private_lcm_url(int number = 0);
 
-/// The other end of the controller's wire: sends what an arm and a world would, keeps all that comes back.
+/// LCM peer of the controller: sends the messages of an arm and a world, stores all messages of the controller.
 class LcmPeer {
  public:
-  /// suffix: of the channels that it hears.
+  /// suffix: of the channels that it subscribes to.
   explicit LcmPeer(const std::string& suffix = "");
 
   template <typename Message>
@@ -26,12 +26,12 @@ class LcmPeer {
     send_bytes(channel, encoded(message));
   }
   void send_bytes(const std::string& channel, const Bytes& bytes);
-  /// From now on sends to another network; it goes on listening where it did.
+  /// From now on sends to another network; the subscriptions stay on the old one.
   void send_to(const std::string& url);
 
   /// Receives until the condition holds, for at most limit_s. Returns whether it does.
   bool await(const std::function<bool()>& condition, double limit_s);
-  /// Receives what is there already.
+  /// Receives all pending messages.
   void drain();
   /// Receives for a while.
   void listen(double duration_s);
@@ -39,7 +39,7 @@ class LcmPeer {
   std::vector<joint_command_t> commands;
   std::vector<controller_status_t> statuses;
   std::vector<Bytes> command_bytes;
-  std::string order;  ///< one letter for each message in order of arrival: c or s
+  std::string order;  ///< a letter for each message in order of arrival: c (command) or s (status)
 
  private:
   void on_command(const lcm::ReceiveBuffer* buffer, const std::string& channel, const joint_command_t* message);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/base/realtime.h"
 #include "firmware/model/velocity_range.h"
 
 namespace sidestep::test {
@@ -10,10 +11,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPeriod{10};
 constexpr int kTicksToWait = 5;
-
-int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
-}
 
 JointVector to_joints(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -31,7 +28,7 @@ LiveArm::LiveArm(const JointLimits& limits, const JointVector& start_rad, double
   commands.begin(position_rad_, velocity_radps_);
 }
 
-/// How many of the cycles after one command and before another were silent by intention.
+/// Number of cycles between two commands in which the controller sent none on purpose.
 int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
   return std::count_if(peer.statuses.begin(), peer.statuses.end(), [&](const controller_status_t& status) {
     const bool silent = status.mode == controller_status_t::WAIT || status.mode == controller_status_t::FAULT;
@@ -39,7 +36,7 @@ int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
   });
 }
 
-/// The next command has to go on from there.
+/// Brakes for one tick; the next command must continue from there.
 void LiveArm::stop_by_itself() {
   const double tick_s = std::chrono::duration<double>(kPeriod).count();
   velocity_radps_ = brake(limits_, velocity_radps_, tick_s);
@@ -47,7 +44,7 @@ void LiveArm::stop_by_itself() {
   commands.begin(position_rad_, velocity_radps_);
 }
 
-/// The arm is where it was last told to be.
+/// Moves the arm to the last commanded position.
 void LiveArm::follow() {
   if (followed_ < peer.commands.size()) ticks_without_command_ = 0;
   for (; followed_ < peer.commands.size(); ++followed_) {
@@ -63,7 +60,7 @@ void LiveArm::follow() {
 }
 
 void LiveArm::tick() {
-  const int64_t utime = utime_now() + clock_offset_us;
+  const int64_t utime = static_cast<int64_t>(1e6 * monotonic_s()) + clock_offset_us;
   peer.drain();
   follow();
   if (ticks_without_command_++ >= kTicksToWait) stop_by_itself();
@@ -90,8 +87,8 @@ bool LiveArm::run_until(int8_t mode, double limit_s) {
   return true;
 }
 
-bool LiveArm::says(const char* words) const {
-  return status().message.find(words) != std::string::npos;
+bool LiveArm::says(const char* text) const {
+  return status().message.find(text) != std::string::npos;
 }
 
 double LiveArm::speed_radps() const {

@@ -8,14 +8,14 @@
 
 namespace sidestep::test {
 
-/// An ideal arm and a small world in real time, 100 times a second, over LCM; all commands go through the check. What
-/// is sent may be changed at any time. An arm that hears no command for five ticks stops by itself.
+/// Real-time model of an ideal arm, a target and an obstacle over LCM with 100 ticks a second. All commands are
+/// checked. Public members may be changed at any time. Without a command for five ticks the arm stops by itself.
 class LiveArm {
  public:
   /// period_s: of the commands.
   LiveArm(const JointLimits& limits, const JointVector& start_rad, double period_s = 0.01);
 
-  bool arm_speaks = true, target_speaks = true, obstacles_speak = true;
+  bool arm_speaks = true, target_speaks = true, obstacles_speak = true;  ///< which messages are sent
   Vector3 target_m = Vector3::Zero();
   int64_t clock_offset_us = 0;  ///< of all utimes
   LcmPeer peer;
@@ -26,9 +26,10 @@ class LiveArm {
   bool run_until(int8_t mode, double limit_s);
 
   const controller_status_t& status() const { return peer.statuses.back(); }
-  bool says(const char* words) const;
+  /// Whether the last status message contains the text.
+  bool says(const char* text) const;
   double speed_radps() const;  ///< of the last command
-  /// Commands that the network dropped; the check goes on behind them.
+  /// Number of commands that the network dropped; the check continues after them.
   int64_t lost() const { return lost_; }
 
  private:

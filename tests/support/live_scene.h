@@ -5,17 +5,18 @@
 
 namespace sidestep::test {
 
-/// A controller in real time on the LWA3, on this process's network. before: a program that starts it, with arguments.
+/// Starts a real-time controller for the LWA3 on this process's network. before: a program that starts it, with
+/// arguments.
 Process start_controller(const std::string& law, std::vector<std::string> before = {});
 
-/// Fails the test when a command was one that the arm cannot follow, or too many were lost to tell.
+/// Fails the test if the arm could not have followed one of the commands, or if more than 5 % of them were lost.
 void check_stream(const LiveArm& arm);
 
-/// A controller in real time that is moving the arm.
+/// A real-time controller that is moving the arm.
 struct LiveScene {
   explicit LiveScene(const std::string& law);
 
-  /// Gives the arm a new target now and then.
+  /// Sends a new target every 0.4 s.
   void wander(double duration_s);
 
   Process controller;

@@ -10,7 +10,7 @@ inline const Arm& lwa3() {
   return arm;
 }
 
-/// Home pose of the paper: the tool at (-0.328, 0, 0.9137) without rotation.
+/// Home configuration of the paper: the tool at (-0.328, 0, 0.9137) m without rotation.
 inline JointVector home_rad() {
   JointVector q_rad = JointVector::Zero(7);
   q_rad[1] = M_PI / 2;

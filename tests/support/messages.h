@@ -13,7 +13,7 @@ namespace sidestep::test {
 
 using Bytes = std::vector<uint8_t>;
 
-/// A message as it goes over the wire.
+/// The encoded bytes of a message.
 template <typename Message>
 Bytes encoded(const Message& message) {
   Bytes bytes(static_cast<size_t>(message.getEncodedSize()));

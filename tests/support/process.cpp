@@ -35,7 +35,7 @@ Process::Process(const std::vector<std::string>& arguments) {
   check(id_ >= 0, "cannot fork");
   if (id_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (const int signal : {SIGHUP, SIGINT}) std::signal(signal, SIG_DFL);  // nohup and shells have them ignored
+    for (const int signal : {SIGHUP, SIGINT}) std::signal(signal, SIG_DFL);  // nohup and shells ignore them
     if (getppid() != parent) _exit(127);
     const int log = open(log_file_.c_str(), O_WRONLY | O_APPEND);
     dup2(log, STDOUT_FILENO);

@@ -5,7 +5,7 @@
 
 namespace sidestep::test {
 
-/// A program that a test has started. It is killed with this object, by kill_processes(), or when the test binary ends,
+/// A program started by a test. It is killed with this object, by kill_processes(), or when the test binary ends,
 /// whichever comes first.
 class Process {
  public:
@@ -16,11 +16,11 @@ class Process {
 
   void signal(int number);
 
-  /// Exit code, 128 + signal when one ended it, or kStillRunning after limit_s.
+  /// Exit code, 128 + signal if a signal ended the program, or kStillRunning after limit_s.
   int wait(double limit_s);
   static constexpr int kStillRunning = -1;
 
-  /// What it has written to standard output and error so far.
+  /// Standard output and error so far.
   std::string output() const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace sidestep::test {
 
-/// Random values of a seed, the same on every run.
+/// Random values from a seed; the same on every run.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -36,7 +36,7 @@ class Random {
     for (int i = 0; i < count; ++i) v[i] = uniform(lower, upper);
     return v;
   }
-  /// Within this share of the position limits; without limits within half a turn.
+  /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi.
   JointVector poses(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {

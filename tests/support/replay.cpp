@@ -12,7 +12,8 @@
 namespace sidestep::test {
 namespace {
 
-/// The program, behind an emulator where there is one: other machines round otherwise.
+/// The replay program, or the command in $REPLAY. Under emulation $REPLAY starts the program of the emulated machine,
+/// which rounds differently from the host's.
 std::vector<std::string> program() {
   const char* command = std::getenv("REPLAY");
   std::istringstream words(command ? command : "build/replay");
@@ -31,11 +32,11 @@ Replay replay(const std::string& log, const std::vector<std::string>& more) {
 }
 
 int agreed(const std::string& log) {
-  const Replay said = replay(log);
-  check(said.code == 0 && said.output.find("all agree bit for bit") != std::string::npos, "code %d: %s", said.code,
-        said.output.c_str());
-  print_message("%s", said.output.c_str());
-  return std::atoi(said.output.c_str());
+  const Replay result = replay(log);
+  check(result.code == 0 && result.output.find("all agree bit for bit") != std::string::npos, "code %d: %s",
+        result.code, result.output.c_str());
+  print_message("%s", result.output.c_str());
+  return std::atoi(result.output.c_str());
 }
 
 std::vector<std::string> logs_in(const std::string& folder, const std::string& reason) {

@@ -5,7 +5,7 @@
 
 namespace sidestep::test {
 
-/// What build/replay made of a log.
+/// Result of build/replay for a log.
 struct Replay {
   int code;
   std::string output;
@@ -13,11 +13,11 @@ struct Replay {
 
 Replay replay(const std::string& log, const std::vector<std::string>& more = {});
 
-/// Cycles that agree, as the replay says it; fails the test unless all do, bit for bit.
+/// Replays a log and returns the number of cycles; fails the test unless all agree bit for bit.
 int agreed(const std::string& log);
 
-/// The logs of a folder that are complete and were written for this reason, the oldest first. A pause of the machine is
-/// a fault, too, and may leave one that no test asked for.
+/// The complete logs in a folder that were written for this reason, the oldest first. A pause of the machine is also a
+/// fault and may add a log that the test did not cause.
 std::vector<std::string> logs_in(const std::string& folder, const std::string& reason);
 
 }  // namespace sidestep::test

@@ -30,7 +30,7 @@ Eigen::Matrix4d craig(double alpha_rad, double d_m, double q_rad) {
   return t;
 }
 
-void home_is_the_papers(void**) {
+void home_pose_is_that_of_the_paper(void**) {
   Joints q_rad = Joints::Zero(kJoints);
   q_rad[1] = M_PI / 2;
   q_rad[3] = -M_PI / 2;
@@ -39,7 +39,7 @@ void home_is_the_papers(void**) {
   check_near(home.tool_rotation, Matrix3::Identity(), 1e-12);
 }
 
-void frames_are_those_of_the_dh_table(void**) {
+void frames_match_the_dh_table(void**) {
   const double quarter = M_PI / 2;
   const double alpha_rad[] = {0, quarter, -quarter, quarter, -quarter, quarter, -quarter};
   const double d_m[] = {0.3, 0, 0.328, 0, 0.2765, 0, 0};
@@ -60,17 +60,17 @@ void frames_are_those_of_the_dh_table(void**) {
   }
 }
 
-void jacobian_is_the_slope_of_the_tool(void**) {
+void jacobian_is_the_derivative_of_the_tool_position(void**) {
   Random random(2);
   for (int trial = 0; trial < 200; ++trial) {
     const Joints q_rad = random_joints(random);
     const Joints step_rad = 1e-6 * random_joints(random);
-    const Vector3 moved_m = lwa3_arm().pose(q_rad + step_rad).tool() - lwa3_arm().pose(q_rad - step_rad).tool();
-    check_near(tool_jacobian(lwa3_arm().pose(q_rad)) * (2.0 * step_rad), moved_m, 1e-13);
+    const Vector3 difference_m = lwa3_arm().pose(q_rad + step_rad).tool() - lwa3_arm().pose(q_rad - step_rad).tool();
+    check_near(tool_jacobian(lwa3_arm().pose(q_rad)) * (2.0 * step_rad), difference_m, 1e-13);
   }
 }
 
-/// The arm's capsules and the sphere as FCL has them.
+/// The arm's capsules and the sphere as FCL objects.
 struct Objects {
   std::vector<fcl::CollisionObjectd> links;
   fcl::CollisionObjectd sphere;
@@ -80,8 +80,8 @@ Objects objects(const ArmPose& arm, const Vector3& center_m, double radius_m) {
   Objects result{{}, {std::make_shared<fcl::Sphered>(radius_m), Matrix3::Identity(), center_m}};
   for (size_t i = 0; i < 4; ++i) {
     const Vector3 along = arm.corners[i + 1] - arm.corners[i];
-    const Matrix3 turn = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along).toRotationMatrix();
-    result.links.emplace_back(std::make_shared<fcl::Capsuled>(kLinkRadius_m, along.norm()), turn,
+    const Matrix3 rotation = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), along).toRotationMatrix();
+    result.links.emplace_back(std::make_shared<fcl::Capsuled>(kLinkRadius_m, along.norm()), rotation,
                               Vector3(0.5 * (arm.corners[i] + arm.corners[i + 1])));
   }
   return result;
@@ -104,7 +104,7 @@ bool fcl_touches(const Objects& objects) {
   return false;
 }
 
-void clearance_is_that_of_fcl(void**) {
+void clearance_matches_fcl(void**) {
   Random random(3);
   int apart = 0, overlapping = 0;
   for (int trial = 0; trial < 5000; ++trial) {
@@ -120,8 +120,8 @@ void clearance_is_that_of_fcl(void**) {
   check(apart > 1000 && overlapping > 1000, "%d apart, %d overlapping", apart, overlapping);
 }
 
-/// A larger sphere is nearer by as much, also inside the arm.
-void depth_grows_with_the_radius(void**) {
+/// Also for a sphere that overlaps the arm.
+void a_larger_radius_reduces_the_clearance_by_the_same_length(void**) {
   Random random(4);
   for (int trial = 0; trial < 1000; ++trial) {
     const ArmPose arm = lwa3_arm().pose(random_joints(random));
@@ -134,11 +134,11 @@ void depth_grows_with_the_radius(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(home_is_the_papers),
-      cmocka_unit_test(frames_are_those_of_the_dh_table),
-      cmocka_unit_test(jacobian_is_the_slope_of_the_tool),
-      cmocka_unit_test(clearance_is_that_of_fcl),
-      cmocka_unit_test(depth_grows_with_the_radius),
+      cmocka_unit_test(home_pose_is_that_of_the_paper),
+      cmocka_unit_test(frames_match_the_dh_table),
+      cmocka_unit_test(jacobian_is_the_derivative_of_the_tool_position),
+      cmocka_unit_test(clearance_matches_fcl),
+      cmocka_unit_test(a_larger_radius_reduces_the_clearance_by_the_same_length),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

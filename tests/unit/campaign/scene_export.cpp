@@ -13,11 +13,11 @@ using sidestep::test::one_line_with;
 
 namespace {
 
-void the_simulator_reads_the_same_scene(void**) {
+void an_exported_scene_is_the_same_scene_in_the_simulator(void**) {
   for (const char* name : {"moving:11", "crowd:12", "clutter:13", "real:14", "dodge3@1:15", "dodge6d@0.5:16"}) {
-    const Scene scene = scene_named(name);
+    const Scene scene = scene_to_export(name);
     const auto scenario =
-        sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", scenario_yaml(scene))).front();
+        sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", export_scene(scene))).front();
     check(scenario.periods == scene.periods && scenario.period_us == kPeriod_us, "%s", name);
     check_near(scenario.start_rad, scene.start_rad, 0.0);
     check(scenario.world.obstacles.size() == scene.spheres.size(), "%s", name);
@@ -35,8 +35,7 @@ void the_simulator_reads_the_same_scene(void**) {
   }
 }
 
-/// An arm with its own limit for each joint.
-void the_real_plant_has_the_limits_of_every_joint(void**) {
+void an_exported_real_scene_has_the_velocity_limit_of_every_joint(void**) {
   class UnevenArm : public Lwa3Arm {
    public:
     Limits limits(const Family& family) const override {
@@ -46,13 +45,13 @@ void the_real_plant_has_the_limits_of_every_joint(void**) {
     }
   };
   const UnevenArm arm;
-  const std::string yaml = scenario_yaml(scene_named("real:14", arm));
+  const std::string yaml = export_scene(scene_to_export("real:14", arm));
   const auto scenario = sidestep::sim::load_scenario(sidestep::test::scratch_file("s.yaml", yaml)).front();
   check_near(scenario.plant.velocity_limit_radps, arm.limits(family_named("real")).velocity_radps, 0.0);
 }
 
-/// benchmark.yaml is the controller's configuration for these scenarios.
-void the_configuration_has_the_benchmarks_limits(void**) {
+/// benchmark.yaml is the controller's configuration for exported scenes of all families except dodge.
+void the_configuration_of_exported_scenes_has_the_benchmarks_limits(void**) {
   const auto model = sidestep::load_config("host/campaign/benchmark.yaml", {}).model;
   const Limits limits = lwa3_arm().range();
   check_near(model.arm.limits.lower_rad, limits.lower_rad, 0.0);
@@ -61,7 +60,7 @@ void the_configuration_has_the_benchmarks_limits(void**) {
   check_near(model.arm.limits.acceleration_radps2, limits.acceleration_radps2, 0.0);
 }
 
-void dodges_have_the_limits_of_the_urdf(void**) {
+void exported_dodges_have_the_limits_of_the_urdf(void**) {
   const auto model = sidestep::load_config("firmware/config/lwa3.yaml", {}).model;
   const Limits limits = lwa3_arm().limits(family_named("dodge@1"));
   check_near(model.arm.limits.lower_rad, limits.lower_rad, 0.0);
@@ -69,10 +68,10 @@ void dodges_have_the_limits_of_the_urdf(void**) {
   check_near(model.arm.limits.velocity_radps, limits.velocity_radps, 0.0);
 }
 
-void bad_names_are_refused(void**) {
+void names_of_no_scene_are_rejected(void**) {
   for (const char* name :
        {"", "moving", "moving:", "moving:x", "moving:1x", "moving:-1", "slow:1", ":1", "moving:99999999999999999999"}) {
-    const std::string message = message_of([&] { scene_named(name); });
+    const std::string message = message_of([&] { scene_to_export(name); });
     check(one_line_with(message, {std::string(name, std::strcspn(name, ":"))}), "'%s': %s", name, message.c_str());
   }
 }
@@ -81,11 +80,11 @@ void bad_names_are_refused(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(the_simulator_reads_the_same_scene),
-      cmocka_unit_test(the_real_plant_has_the_limits_of_every_joint),
-      cmocka_unit_test(the_configuration_has_the_benchmarks_limits),
-      cmocka_unit_test(dodges_have_the_limits_of_the_urdf),
-      cmocka_unit_test(bad_names_are_refused),
+      cmocka_unit_test(an_exported_scene_is_the_same_scene_in_the_simulator),
+      cmocka_unit_test(an_exported_real_scene_has_the_velocity_limit_of_every_joint),
+      cmocka_unit_test(the_configuration_of_exported_scenes_has_the_benchmarks_limits),
+      cmocka_unit_test(exported_dodges_have_the_limits_of_the_urdf),
+      cmocka_unit_test(names_of_no_scene_are_rejected),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

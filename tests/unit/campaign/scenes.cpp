@@ -31,7 +31,7 @@ std::string name(const Scene& scene) {
   return scene.family->name + ':' + std::to_string(scene.seed);
 }
 
-void every_witness_is_clear_of_every_sphere_and_near_each(void**) {
+void the_witness_keeps_clear_of_every_sphere_but_comes_near_it(void**) {
   for_each_scene(false, [](const Scene& scene) {
     for (const SpherePath& sphere : scene.spheres) {
       double least_m = 1e9;
@@ -45,7 +45,7 @@ void every_witness_is_clear_of_every_sphere_and_near_each(void**) {
   });
 }
 
-void every_witness_keeps_the_limits(void**) {
+void the_witness_keeps_the_joint_limits(void**) {
   for_each_scene(false, [](const Scene& scene) {
     const Limits limits = lwa3_arm().range();
     for (const Joints& q_rad : {scene.start_rad, scene.goal_rad})
@@ -69,7 +69,7 @@ void start_and_goal_are_above_the_floor(void**) {
   });
 }
 
-void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
+void number_and_speed_of_the_spheres_match_the_family(void**) {
   for_each_scene(false, [](const Scene& scene) {
     const Family& family = *scene.family;
     check(scene.spheres.empty() == (family.most_obstacles == 0) &&
@@ -84,17 +84,17 @@ void spheres_are_as_many_and_as_fast_as_the_family_says(void**) {
   });
 }
 
-void plain_tracking_hits_in_every_scene(void**) {
+void plain_tracking_touches_a_sphere_in_every_scene_that_has_any(void**) {
   for_each_scene(false, [](const Scene& scene) {
     check(plain_tracking_hits(scene) != scene.spheres.empty(), "%s", name(scene).c_str());
   });
 }
 
-void the_target_of_a_chase_is_the_witnesss_tool(void**) {
+void the_target_of_a_chase_is_the_tool_of_the_witness(void**) {
   for (uint64_t seed = 0; seed < kScenes; ++seed) {
     const Scene scene = make_scene(family_named("chase"), seed);
     for (double t_s = 0.02; t_s < scene.duration_s() - 0.02; t_s += 0.05) {
-      const Moving target = target_at(scene, t_s);
+      const PointMotion target = target_at(scene, t_s);
       check_near(target.position_m, lwa3_arm().pose(witness_rad(scene, t_s)).tool(), 0.0);
       const Vector3 slope_mps =
           (target_at(scene, t_s + 1e-5).position_m - target_at(scene, t_s - 1e-5).position_m) / 2e-5;
@@ -103,19 +103,20 @@ void the_target_of_a_chase_is_the_witnesss_tool(void**) {
   }
 }
 
-void the_target_of_a_full_pose_turns_as_the_witness(void**) {
+void the_orientation_target_of_a_full_pose_is_that_of_the_witness(void**) {
   const Scene scene = make_scene(family_named("chase6d"), 3), moving = make_scene(family_named("chase"), 3);
   check_near(scene.goal_rad, moving.goal_rad, 0.0);
-  check(!turning_at(moving, 1.0), "a chase has no orientation");
+  check(!orientation_target_at(moving, 1.0), "a chase has no orientation");
   for (double t_s = 0.02; t_s < scene.duration_s() - 0.02; t_s += 0.05) {
-    const auto turning = turning_at(scene, t_s), later = turning_at(scene, t_s + 1e-5);
-    check_near(turning->orientation.toRotationMatrix(), lwa3_arm().pose(witness_rad(scene, t_s)).tool_rotation, 1e-12);
-    const Eigen::AngleAxisd rotated(later->orientation * turning->orientation.conjugate());
-    check_near(turning->velocity_radps, Vector3(rotated.angle() / 1e-5 * rotated.axis()), 1e-3);
+    const auto orientation_target = orientation_target_at(scene, t_s), later = orientation_target_at(scene, t_s + 1e-5);
+    check_near(orientation_target->orientation.toRotationMatrix(),
+               lwa3_arm().pose(witness_rad(scene, t_s)).tool_rotation, 1e-12);
+    const Eigen::AngleAxisd rotation(later->orientation * orientation_target->orientation.conjugate());
+    check_near(orientation_target->velocity_radps, Vector3(rotation.angle() / 1e-5 * rotation.axis()), 1e-3);
   }
 }
 
-void a_seed_is_a_scene(void**) {
+void the_same_seed_gives_the_same_scene(void**) {
   for (const Family& family : families()) {
     const Scene a = make_scene(family, 7), b = make_scene(family, 7), other = make_scene(family, 8);
     check_near(a.start_rad, b.start_rad, 0.0);
@@ -127,13 +128,13 @@ void a_seed_is_a_scene(void**) {
   }
 }
 
-void real_has_the_scenes_of_moving(void**) {
+void the_families_real_and_moving_have_the_same_scenes(void**) {
   const Scene real = make_scene(family_named("real"), 3), moving = make_scene(family_named("moving"), 3);
   check_near(real.goal_rad, moving.goal_rad, 0.0);
   check(real.spheres.size() == moving.spheres.size(), "%zu spheres", real.spheres.size());
 }
 
-/// The link that the sphere's centre goes through at the crossing, or none.
+/// Whether the point is on the axis of a moving link.
 bool crosses_a_moving_link(const ArmPose& arm, const Vector3& center_m) {
   for (size_t i = 1; i < 4; ++i) {
     const Vector3 from = arm.corners[i], to = arm.corners[i + 1];
@@ -142,12 +143,12 @@ bool crosses_a_moving_link(const ArmPose& arm, const Vector3& center_m) {
   return false;
 }
 
-void dodged_spheres_go_through_the_arm_past_the_column(void**) {
+void dodge_spheres_cross_a_link_and_keep_clear_of_the_column(void**) {
   for_each_scene(true, [](const Scene& scene) {
     const ArmPose arm = lwa3_arm().pose(scene.start_rad);
     check(scene.spheres.size() == static_cast<size_t>(scene.family->most_obstacles), "%s", name(scene).c_str());
     for (const SpherePath& sphere : scene.spheres) {
-      const Moving start = sphere.at(0.0), crossing = sphere.at(scene.crossing_s);
+      const PointMotion start = sphere.at(0.0), crossing = sphere.at(scene.crossing_s);
       check(crosses_a_moving_link(arm, crossing.position_m), "%s", name(scene).c_str());
       check_near((crossing.position_m - start.position_m).norm(), 0.9, 1e-9);
       check_near(start.velocity_mps.norm(), scene.family->speed_mps, 1e-12);
@@ -163,7 +164,7 @@ void dodged_spheres_go_through_the_arm_past_the_column(void**) {
   });
 }
 
-/// Its joints are too slow for any motion that a scene begins and ends with.
+/// An arm whose joints are too slow for any witness.
 class SlowArm : public Lwa3Arm {
  public:
   Limits limits(const Family& family) const override {
@@ -173,13 +174,13 @@ class SlowArm : public Lwa3Arm {
   }
 };
 
-/// Every sphere is too near to it.
+/// An arm to which every sphere is too close.
 class WideArm : public Lwa3Arm {
  public:
   double clearance(const ArmPose&, const Vector3&, double, double) const override { return 0.0; }
 };
 
-void an_arm_without_scenes_is_refused_by_family_and_reason(void**) {
+void an_arm_without_scenes_is_rejected_with_family_and_reason(void**) {
   const SlowArm slow;
   const std::string too_slow = message_of([&] { make_scene(family_named("moving"), 1, slow); });
   check(one_line_with(too_slow, {"moving", "speed"}), "%s", too_slow.c_str());
@@ -188,30 +189,30 @@ void an_arm_without_scenes_is_refused_by_family_and_reason(void**) {
   check(one_line_with(no_place, {"dodge@1", "no scene in"}), "%s", no_place.c_str());
 }
 
-void families_are_found_by_word(void**) {
+void families_are_selected_by_name(void**) {
   check(families_of("all").size() == families().size(), "%zu", families_of("all").size());
   check(families_of("dodge").size() == 12, "%zu", families_of("dodge").size());
   check(families_of("dodge@0.5").size() == 1, "%zu", families_of("dodge@0.5").size());
   check(one_line_with(message_of([] { families_of("slow"); }), {"slow", "moving"}),
-        "an unknown family is named, and those that exist");
+        "the message lists the unknown family and the existing ones");
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(every_witness_is_clear_of_every_sphere_and_near_each),
-      cmocka_unit_test(every_witness_keeps_the_limits),
+      cmocka_unit_test(the_witness_keeps_clear_of_every_sphere_but_comes_near_it),
+      cmocka_unit_test(the_witness_keeps_the_joint_limits),
       cmocka_unit_test(start_and_goal_are_above_the_floor),
-      cmocka_unit_test(spheres_are_as_many_and_as_fast_as_the_family_says),
-      cmocka_unit_test(plain_tracking_hits_in_every_scene),
-      cmocka_unit_test(the_target_of_a_chase_is_the_witnesss_tool),
-      cmocka_unit_test(the_target_of_a_full_pose_turns_as_the_witness),
-      cmocka_unit_test(a_seed_is_a_scene),
-      cmocka_unit_test(real_has_the_scenes_of_moving),
-      cmocka_unit_test(dodged_spheres_go_through_the_arm_past_the_column),
-      cmocka_unit_test(an_arm_without_scenes_is_refused_by_family_and_reason),
-      cmocka_unit_test(families_are_found_by_word),
+      cmocka_unit_test(number_and_speed_of_the_spheres_match_the_family),
+      cmocka_unit_test(plain_tracking_touches_a_sphere_in_every_scene_that_has_any),
+      cmocka_unit_test(the_target_of_a_chase_is_the_tool_of_the_witness),
+      cmocka_unit_test(the_orientation_target_of_a_full_pose_is_that_of_the_witness),
+      cmocka_unit_test(the_same_seed_gives_the_same_scene),
+      cmocka_unit_test(the_families_real_and_moving_have_the_same_scenes),
+      cmocka_unit_test(dodge_spheres_cross_a_link_and_keep_clear_of_the_column),
+      cmocka_unit_test(an_arm_without_scenes_is_rejected_with_family_and_reason),
+      cmocka_unit_test(families_are_selected_by_name),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

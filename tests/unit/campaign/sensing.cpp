@@ -7,21 +7,21 @@ using namespace sidestep::campaign;
 
 namespace {
 
-void exact_sight_is_the_truth_of_every_cycle(void**) {
+void exact_sensing_reports_the_truth_in_every_cycle(void**) {
   const Scene scene = make_scene(family_named("erratic"), 1);
   Sensing sensing(scene);
   for (int k = 0; k < 300; ++k) {
-    const Sighting& seen = sensing.look(1'000'000 + k * kPeriod_us, k * kPeriod_s);
-    check(seen.count == k + 1 && seen.received_us == 1'000'000 + k * kPeriod_us, "cycle %d", k);
-    check(seen.spheres.size() == scene.spheres.size(), "cycle %d", k);
-    for (size_t i = 0; i < seen.spheres.size(); ++i) {
-      check_near(seen.spheres[i].position_m, scene.spheres[i].at(k * kPeriod_s).position_m, 0.0);
-      check_near(seen.spheres[i].velocity_mps, scene.spheres[i].at(k * kPeriod_s).velocity_mps, 0.0);
+    const ObstacleMeasurement& measured = sensing.newest_at(1'000'000 + k * kPeriod_us, k * kPeriod_s);
+    check(measured.count == k + 1 && measured.received_us == 1'000'000 + k * kPeriod_us, "cycle %d", k);
+    check(measured.spheres.size() == scene.spheres.size(), "cycle %d", k);
+    for (size_t i = 0; i < measured.spheres.size(); ++i) {
+      check_near(measured.spheres[i].position_m, scene.spheres[i].at(k * kPeriod_s).position_m, 0.0);
+      check_near(measured.spheres[i].velocity_mps, scene.spheres[i].at(k * kPeriod_s).velocity_mps, 0.0);
     }
   }
 }
 
-/// A long look at one sphere of a scene of the family real.
+/// Statistics of the measurements of one sphere in a scene of the family real.
 struct Statistics {
   int received = 0;
   double noise_sum_m = 0.0, noise_squares_m2 = 0.0;
@@ -33,48 +33,49 @@ Statistics watch(double duration_s) {
   Sensing sensing(scene);
   Statistics statistics;
   const int64_t start_us = 1'000'000;
-  int64_t count = sensing.look(start_us, 0.0).count;
+  int64_t count = sensing.newest_at(start_us, 0.0).count;
   for (int64_t now_us = start_us; now_us < start_us + static_cast<int64_t>(duration_s * 1e6); now_us += kPeriod_us) {
-    const Sighting& seen = sensing.look(now_us, static_cast<double>(now_us - start_us) / 1e6);
-    check(seen.received_us <= now_us, "received %ld us ahead of time", static_cast<long>(seen.received_us - now_us));
-    statistics.oldest_us = std::max(statistics.oldest_us, now_us - seen.received_us);
-    if (seen.count == count) continue;
-    check(seen.count == count + 1, "two at once");
-    count = seen.count;
+    const ObstacleMeasurement& measured = sensing.newest_at(now_us, static_cast<double>(now_us - start_us) / 1e6);
+    check(measured.received_us <= now_us, "received %ld us ahead of time",
+          static_cast<long>(measured.received_us - now_us));
+    statistics.oldest_us = std::max(statistics.oldest_us, now_us - measured.received_us);
+    if (measured.count == count) continue;
+    check(measured.count == count + 1, "two sets were received in one cycle");
+    count = measured.count;
     ++statistics.received;
-    const double captured_s = static_cast<double>(seen.received_us - 40'000 - start_us) / 1e6;
-    const Moving truth = scene.spheres[0].at(captured_s);
-    check_near(seen.spheres[0].velocity_mps, truth.velocity_mps, 0.0);
-    const double noise_m = (seen.spheres[0].position_m - truth.position_m).x();
+    const double captured_s = static_cast<double>(measured.received_us - 40'000 - start_us) / 1e6;
+    const PointMotion truth = scene.spheres[0].at(captured_s);
+    check_near(measured.spheres[0].velocity_mps, truth.velocity_mps, 0.0);
+    const double noise_m = (measured.spheres[0].position_m - truth.position_m).x();
     statistics.noise_sum_m += noise_m;
     statistics.noise_squares_m2 += noise_m * noise_m;
   }
   return statistics;
 }
 
-void real_sight_is_late_noisy_and_incomplete(void**) {
-  const Statistics seen = watch(200.0);
-  check(std::abs(seen.received - 0.9 * 30 * 200) < 100, "%d received", seen.received);
-  check_near(seen.noise_sum_m / seen.received, 0.0, 3e-4);
-  check_near(std::sqrt(seen.noise_squares_m2 / seen.received), 0.005, 2e-4);
-  check(seen.oldest_us > 60'000 && seen.oldest_us < 300'000, "%ld us", static_cast<long>(seen.oldest_us));
+void real_sensing_is_late_noisy_and_incomplete(void**) {
+  const Statistics measured = watch(200.0);
+  check(std::abs(measured.received - 0.9 * 30 * 200) < 100, "%d received", measured.received);
+  check_near(measured.noise_sum_m / measured.received, 0.0, 3e-4);
+  check_near(std::sqrt(measured.noise_squares_m2 / measured.received), 0.005, 2e-4);
+  check(measured.oldest_us > 60'000 && measured.oldest_us < 300'000, "%ld us", static_cast<long>(measured.oldest_us));
 }
 
-void while_the_world_stands_still_so_does_what_is_seen(void**) {
+void obstacles_are_measured_at_rest_while_the_scene_is_frozen(void**) {
   const Scene scene = make_scene(family_named("real"), 2);
   Sensing sensing(scene);
   for (int k = 0; k < 100; ++k)
-    check_near(sensing.look(1'000'000 + k * kPeriod_us, 0.0).spheres[0].position_m, scene.spheres[0].at(0.0).position_m,
-               0.03);
+    check_near(sensing.newest_at(1'000'000 + k * kPeriod_us, 0.0).spheres[0].position_m,
+               scene.spheres[0].at(0.0).position_m, 0.03);
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(exact_sight_is_the_truth_of_every_cycle),
-      cmocka_unit_test(real_sight_is_late_noisy_and_incomplete),
-      cmocka_unit_test(while_the_world_stands_still_so_does_what_is_seen),
+      cmocka_unit_test(exact_sensing_reports_the_truth_in_every_cycle),
+      cmocka_unit_test(real_sensing_is_late_noisy_and_incomplete),
+      cmocka_unit_test(obstacles_are_measured_at_rest_while_the_scene_is_frozen),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -10,33 +10,33 @@ namespace {
 
 SpherePath random_path(Random& random) {
   SpherePath path(random.inside(-1, 1), random.inside(-0.4, 0.4));
-  for (int i = 0; i < 8; ++i) path.then(random.uniform(0.5, 2.0), random.inside(-0.4, 0.4));
+  for (int i = 0; i < 8; ++i) path.add_knot(random.uniform(0.5, 2.0), random.inside(-0.4, 0.4));
   return path;
 }
 
-void a_straight_path_keeps_its_velocity(void**) {
+void a_straight_path_has_constant_velocity(void**) {
   const SpherePath path({1, 2, 3}, {0.1, 0, -0.2});
   check(path.straight(), "no knots were added");
   check_near(path.at(10.0).position_m, Vector3(2, 2, 1), 1e-12);
   check_near(path.at(10.0).velocity_mps, Vector3(0.1, 0, -0.2), 0.0);
 }
 
-void it_stands_at_its_start_before_the_time_begins(void**) {
+void before_the_start_time_the_position_is_the_start(void**) {
   const SpherePath path({1, 2, 3}, {0.1, 0, -0.2});
   check_near(path.at(-1.0).position_m, Vector3(1, 2, 3), 0.0);
   check_near(path.at(-1.0).velocity_mps, Vector3(0.1, 0, -0.2), 0.0);
 }
 
-void the_velocity_is_reached_when_it_should(void**) {
+void a_knot_has_its_time_position_and_velocity(void**) {
   SpherePath path({0, 0, 0}, {0.2, 0, 0});
-  path.then(2.0, {0, 0.4, 0});
+  path.add_knot(2.0, {0, 0.4, 0});
   check_near(path.at(2.0).velocity_mps, Vector3(0, 0.4, 0), 1e-12);
   check_near(path.at(1.0).velocity_mps, Vector3(0.1, 0.2, 0), 1e-12);
   check_near(path.at(2.0).position_m, Vector3(0.2, 0.4, 0), 1e-12);
   check_near(path.at(5.0).position_m, Vector3(0.2, 1.6, 0), 1e-12);
 }
 
-void velocity_is_the_slope_of_the_position(void**) {
+void velocity_is_the_derivative_of_the_position(void**) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
     const SpherePath path = random_path(random);
@@ -48,7 +48,8 @@ void velocity_is_the_slope_of_the_position(void**) {
   }
 }
 
-/// Minimum jerk starts and ends without acceleration, so none jumps at a knot; its largest is 1.875 dv / T.
+/// A minimum-jerk blend starts and ends with zero acceleration, so the acceleration does not jump at a knot. The
+/// largest acceleration is 1.875 dv / T.
 void acceleration_is_continuous_and_bounded(void**) {
   Random random(2);
   for (int trial = 0; trial < 50; ++trial) {
@@ -68,10 +69,10 @@ void acceleration_is_continuous_and_bounded(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_straight_path_keeps_its_velocity),
-      cmocka_unit_test(it_stands_at_its_start_before_the_time_begins),
-      cmocka_unit_test(the_velocity_is_reached_when_it_should),
-      cmocka_unit_test(velocity_is_the_slope_of_the_position),
+      cmocka_unit_test(a_straight_path_has_constant_velocity),
+      cmocka_unit_test(before_the_start_time_the_position_is_the_start),
+      cmocka_unit_test(a_knot_has_its_time_position_and_velocity),
+      cmocka_unit_test(velocity_is_the_derivative_of_the_position),
       cmocka_unit_test(acceleration_is_continuous_and_bounded),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -15,7 +15,7 @@ using sidestep::test::scratch_folder;
 
 namespace {
 
-/// Trials of plain tracking and of nobody in particular, with figures that need all digits.
+/// Trials with random metrics that need all digits.
 std::vector<Row> some_rows() {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -24,14 +24,14 @@ std::vector<Row> some_rows() {
     for (const Family& family : families()) {
       for (uint64_t seed = 0; seed < 30; ++seed) {
         Row row{&family, law, 1'000'000 + seed, {}};
-        row.outcome.clearance_m = any(engine);
-        row.outcome.final_error_m = 0.02 * std::abs(any(engine));
-        row.outcome.arrival_s = 5.0 + any(engine);
-        row.outcome.witness_arrival_s = 1.0 / 3.0;
-        row.outcome.path_rad = std::exp(any(engine));
-        row.outcome.witness_path_rad = seed % 7 == 0 ? Outcome::kNone : 0.1;
-        row.outcome.jerk_radps3 = 1e300 * any(engine);
-        row.outcome.cpu_mean_s = 1e-6 * any(engine);
+        row.metrics.clearance_m = any(engine);
+        row.metrics.final_error_m = 0.02 * std::abs(any(engine));
+        row.metrics.arrival_s = 5.0 + any(engine);
+        row.metrics.witness_arrival_s = 1.0 / 3.0;
+        row.metrics.path_rad = std::exp(any(engine));
+        row.metrics.witness_path_rad = seed % 7 == 0 ? TrialMetrics::kNone : 0.1;
+        row.metrics.jerk_radps3 = 1e300 * any(engine);
+        row.metrics.cpu_mean_s = 1e-6 * any(engine);
         rows.push_back(row);
       }
     }
@@ -44,22 +44,24 @@ std::string all_tables(std::vector<Row> rows) {
   return tables(rows, true) + smoothness_table(rows);
 }
 
-void a_file_gives_back_the_same_bits(void**) {
+void a_csv_file_preserves_every_bit(void**) {
   const std::string file = scratch_folder() + "/trials.csv";
   const std::vector<Row> rows = some_rows();
   write_csv(file, rows);
-  const std::vector<Row> again = read_csv(file);
-  check(again.size() == rows.size(), "%zu rows", again.size());
+  const std::vector<Row> read_back = read_csv(file);
+  check(read_back.size() == rows.size(), "%zu rows", read_back.size());
   for (size_t i = 0; i < rows.size(); ++i) {
-    check(again[i].family == rows[i].family && again[i].law == rows[i].law && again[i].seed == rows[i].seed, "row %zu",
+    check(read_back[i].family == rows[i].family && read_back[i].law == rows[i].law && read_back[i].seed == rows[i].seed,
+          "row %zu", i);
+    check(std::memcmp(&read_back[i].metrics.clearance_m, &rows[i].metrics.clearance_m, sizeof(double)) == 0, "row %zu",
           i);
-    check(std::memcmp(&again[i].outcome.clearance_m, &rows[i].outcome.clearance_m, sizeof(double)) == 0, "row %zu", i);
-    check(again[i].outcome.jerk_radps3 == rows[i].outcome.jerk_radps3, "row %zu", i);
-    check(std::isnan(again[i].outcome.witness_path_rad) == std::isnan(rows[i].outcome.witness_path_rad), "row %zu", i);
+    check(read_back[i].metrics.jerk_radps3 == rows[i].metrics.jerk_radps3, "row %zu", i);
+    check(std::isnan(read_back[i].metrics.witness_path_rad) == std::isnan(rows[i].metrics.witness_path_rad), "row %zu",
+          i);
   }
 }
 
-void shards_together_make_the_table_of_the_whole(void**) {
+void merged_shards_give_the_table_of_the_whole_run(void**) {
   const std::vector<Row> rows = some_rows();
   std::vector<Row> merged;
   for (const size_t shard : {2u, 0u, 1u}) {
@@ -73,7 +75,7 @@ void shards_together_make_the_table_of_the_whole(void**) {
   check(all_tables(merged) == all_tables(rows), "\n%s\n%s", all_tables(merged).c_str(), all_tables(rows).c_str());
 }
 
-void a_trial_that_stands_twice_is_named(void**) {
+void a_duplicate_trial_is_rejected_by_name(void**) {
   std::vector<Row> rows = some_rows();
   rows.push_back(rows[40]);
   const std::string message = sidestep::test::message_of([&] { sort_rows(rows); });
@@ -82,33 +84,33 @@ void a_trial_that_stands_twice_is_named(void**) {
 
 Row trial(double clearance_m, double final_error_m, double arrival_s) {
   Row row{&family_named("moving"), "paper", 0, {}};
-  row.outcome.clearance_m = clearance_m;
-  row.outcome.final_error_m = final_error_m;
-  row.outcome.arrival_s = arrival_s;
-  row.outcome.witness_arrival_s = 2.0;
+  row.metrics.clearance_m = clearance_m;
+  row.metrics.final_error_m = final_error_m;
+  row.metrics.arrival_s = arrival_s;
+  row.metrics.witness_arrival_s = 2.0;
   return row;
 }
 
-void figures_of_a_sample(void**) {
+void statistics_of_a_known_sample(void**) {
   const Sample sample{trial(0.02, 0.001, 3.0), trial(-0.01, 0.002, 2.0), trial(0.0, 0.009, 5.0),
-                      trial(0.03, 0.010, Outcome::kNone)};
+                      trial(0.03, 0.010, TrialMetrics::kNone)};
   check_near(percent(sample, touched), 25.0, 0.0);
   check_near(percent(sample, arrived), 75.0, 0.0);
   check_near(percent(sample, succeeded), 50.0, 0.0);
-  check_near(least(sample, &Outcome::clearance_m), -0.01, 0.0);
-  check_near(mean(successes(sample), &Outcome::arrival_s), 4.0, 0.0);
-  check_near(ratio(sample, &Outcome::arrival_s, &Outcome::witness_arrival_s), 2.0, 0.0);
-  check_near(largest(sample, &Outcome::arrival_s), 5.0, 0.0);
-  check(std::isnan(largest(sample, &Outcome::error_rms_m)), "no trial has it");
+  check_near(least(sample, &TrialMetrics::clearance_m), -0.01, 0.0);
+  check_near(mean(successes(sample), &TrialMetrics::arrival_s), 4.0, 0.0);
+  check_near(ratio(sample, &TrialMetrics::arrival_s, &TrialMetrics::witness_arrival_s), 2.0, 0.0);
+  check_near(largest(sample, &TrialMetrics::arrival_s), 5.0, 0.0);
+  check(std::isnan(largest(sample, &TrialMetrics::error_rms_m)), "no trial has it");
 }
 
-bool same_but_for_the_time(const Row& a, const Row& b) {
-  const Outcome &x = a.outcome, &y = b.outcome;
+bool same_except_cpu_time(const Row& a, const Row& b) {
+  const TrialMetrics &x = a.metrics, &y = b.metrics;
   return a.family == b.family && a.seed == b.seed && x.clearance_m == y.clearance_m &&
          x.final_error_m == y.final_error_m && x.path_rad == y.path_rad && x.jerk_radps3 == y.jerk_radps3;
 }
 
-void threads_and_shards_change_nothing(void**) {
+void threads_and_shards_do_not_change_the_results(void**) {
   std::vector<Task> tasks, odd, even;
   for (const char* family : {"moving", "erratic", "dodge@2"})
     for (uint64_t k = 0; k < 8; ++k) {
@@ -116,35 +118,35 @@ void threads_and_shards_change_nothing(void**) {
       (k % 2 == 0 ? even : odd).push_back(tasks.back());
     }
   const std::atomic<bool> stop{false};
-  const Entrant plain{"plain", nullptr};
+  const TestedController plain{"plain", nullptr};
   const std::vector<Row> one = run(tasks, plain, 1, true, stop), three = run(tasks, plain, 3, true, stop);
   check(one.size() == tasks.size(), "%zu rows", one.size());
-  check(std::equal(one.begin(), one.end(), three.begin(), three.end(), same_but_for_the_time), "three threads");
+  check(std::equal(one.begin(), one.end(), three.begin(), three.end(), same_except_cpu_time), "three threads");
 
   std::vector<Row> merged = run(odd, plain, 1, true, stop), whole = one;
   const std::vector<Row> rest = run(even, plain, 2, true, stop);
   merged.insert(merged.end(), rest.begin(), rest.end());
   sort_rows(merged);
   sort_rows(whole);
-  check(std::equal(whole.begin(), whole.end(), merged.begin(), merged.end(), same_but_for_the_time), "two shards");
+  check(std::equal(whole.begin(), whole.end(), merged.begin(), merged.end(), same_except_cpu_time), "two shards");
 }
 
-void a_stopped_run_ends_at_once(void**) {
+void a_stopped_run_starts_no_trial(void**) {
   const std::atomic<bool> stop{true};
   const std::vector<Task> tasks(1'000, Task{&family_named("moving"), 1});
-  check(run(tasks, {"plain", nullptr}, 2, true, stop).empty(), "nothing was begun");
+  check(run(tasks, {"plain", nullptr}, 2, true, stop).empty(), "a trial was started");
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_file_gives_back_the_same_bits),
-      cmocka_unit_test(shards_together_make_the_table_of_the_whole),
-      cmocka_unit_test(a_trial_that_stands_twice_is_named),
-      cmocka_unit_test(figures_of_a_sample),
-      cmocka_unit_test(threads_and_shards_change_nothing),
-      cmocka_unit_test(a_stopped_run_ends_at_once),
+      cmocka_unit_test(a_csv_file_preserves_every_bit),
+      cmocka_unit_test(merged_shards_give_the_table_of_the_whole_run),
+      cmocka_unit_test(a_duplicate_trial_is_rejected_by_name),
+      cmocka_unit_test(statistics_of_a_known_sample),
+      cmocka_unit_test(threads_and_shards_do_not_change_the_results),
+      cmocka_unit_test(a_stopped_run_starts_no_trial),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -11,110 +11,111 @@ namespace {
 
 constexpr uint64_t kScenes = 10;
 
-/// Moves along the witness, from the cycle `delay` on, and remembers what it saw.
-class WitnessPilot : public Pilot {
+/// Moves along the witness after `delay` cycles and stores its last inputs.
+class WitnessController : public TrialController {
  public:
-  WitnessPilot(const Scene& scene, int delay) : scene_(scene), delay_(delay) {}
+  WitnessController(const Scene& scene, int delay) : scene_(scene), delay_(delay) {}
 
-  Steering cycle(const Seen& seen) override {
+  ControllerOutput cycle(const ControllerInput& input) override {
     const int k = cycles_++ - delay_;
-    target_ = seen.target;
-    if (!seen.obstacles.spheres.empty()) sphere_ = seen.obstacles.spheres[0];
-    Steering steering;
-    steering.tracking = k >= 0;
-    steering.velocity_radps = Joints::Zero(seen.q_rad.size());
-    steering.message = "not yet";
-    if (k >= 0) steering.velocity_radps = (witness_rad(scene_, (k + 1) * kPeriod_s) - seen.q_rad) / kPeriod_s;
-    return steering;
+    target_ = input.target;
+    if (!input.obstacles.spheres.empty()) sphere_ = input.obstacles.spheres[0];
+    ControllerOutput output;
+    output.tracking = k >= 0;
+    output.velocity_radps = Joints::Zero(input.q_rad.size());
+    output.message = "waits for the delay";
+    if (k >= 0) output.velocity_radps = (witness_rad(scene_, (k + 1) * kPeriod_s) - input.q_rad) / kPeriod_s;
+    return output;
   }
 
   int cycles() const { return cycles_; }
-  const Moving& target() const { return target_; }
-  const Moving& sphere() const { return sphere_; }
+  const PointMotion& target() const { return target_; }
+  const PointMotion& sphere() const { return sphere_; }
 
  private:
   const Scene& scene_;
   int delay_;
   int cycles_ = 0;
-  Moving target_, sphere_;
+  PointMotion target_, sphere_;
 };
 
-/// Lets the arm stand.
-class IdlePilot : public Pilot {
+/// Keeps the arm at rest.
+class IdleController : public TrialController {
  public:
-  Steering cycle(const Seen&) override {
-    Steering steering;
-    steering.tracking = true;
-    steering.velocity_radps = Joints::Zero(7);
-    return steering;
+  ControllerOutput cycle(const ControllerInput&) override {
+    ControllerOutput output;
+    output.tracking = true;
+    output.velocity_radps = Joints::Zero(7);
+    return output;
   }
 };
 
-bool success(const Scene& scene, const Outcome& outcome) {
-  return succeeded({scene.family, "", scene.seed, outcome});
+bool success(const Scene& scene, const TrialMetrics& metrics) {
+  return succeeded({scene.family, "", scene.seed, metrics});
 }
 
 void the_witness_solves_every_scene(void**) {
   for (const Family& family : families()) {
     for (uint64_t seed = 0; !family.dodge && !family.real && seed < kScenes; ++seed) {
       const Scene scene = make_scene(family, seed);
-      WitnessPilot pilot(scene, 0);
-      const Outcome outcome = run_trial(scene, pilot);
-      check(success(scene, outcome), "%s:%d", family.name.c_str(), static_cast<int>(seed));
-      check(outcome.clearance_m >= 0.05 - 1e-9, "%g m", outcome.clearance_m);
-      check_near(outcome.path_rad, outcome.witness_path_rad, 1e-6);
-      if (!family.chase) check_near(outcome.arrival_s, outcome.witness_arrival_s, 1e-9);
-      if (family.full_pose) check(outcome.turn_rms_rad < 1e-7, "%g rad", outcome.turn_rms_rad);
-      if (family.chase) check(outcome.error_max_m < 1e-9 && outcome.on_target_share == 1.0, "%g", outcome.error_max_m);
-      check(outcome.speed_radps <= 1.2 && outcome.acceleration_radps2 <= 10.0, "the witness keeps the limits");
-      check(outcome.limit_margin_rad > 0.0, "%g rad", outcome.limit_margin_rad);
+      WitnessController controller(scene, 0);
+      const TrialMetrics metrics = run_trial(scene, controller);
+      check(success(scene, metrics), "%s:%d", family.name.c_str(), static_cast<int>(seed));
+      check(metrics.clearance_m >= 0.05 - 1e-9, "%g m", metrics.clearance_m);
+      check_near(metrics.path_rad, metrics.witness_path_rad, 1e-6);
+      if (!family.chase) check_near(metrics.arrival_s, metrics.witness_arrival_s, 1e-9);
+      if (family.full_pose) check(metrics.turn_rms_rad < 1e-7, "%g rad", metrics.turn_rms_rad);
+      if (family.chase) check(metrics.error_max_m < 1e-9 && metrics.on_target_share == 1.0, "%g", metrics.error_max_m);
+      check(metrics.speed_radps <= 1.2 && metrics.acceleration_radps2 <= 10.0, "the witness keeps the limits");
+      check(metrics.limit_margin_rad > 0.0, "%g rad", metrics.limit_margin_rad);
     }
   }
 }
 
-void plain_tracking_solves_none(void**) {
+void plain_tracking_touches_a_sphere_in_every_scene(void**) {
   for (const Family& family : families()) {
     for (uint64_t seed = 0; !family.dodge && !family.real && seed < kScenes; ++seed) {
       const Scene scene = make_scene(family, seed);
       if (scene.spheres.empty()) continue;
-      const Outcome outcome = run_trial(scene, *make_pilot(nullptr, lwa3_arm(), lwa3_arm().limits(family)));
-      check(outcome.clearance_m < 0.0, "%s:%d", family.name.c_str(), static_cast<int>(seed));
+      const TrialMetrics metrics = run_trial(scene, *make_controller(nullptr, lwa3_arm(), lwa3_arm().limits(family)));
+      check(metrics.clearance_m < 0.0, "%s:%d", family.name.c_str(), static_cast<int>(seed));
     }
   }
 }
 
-void an_arm_that_stands_is_hit_by_every_dodge(void**) {
+void an_arm_at_rest_is_touched_in_every_dodge(void**) {
   for (const Family& family : families()) {
     for (uint64_t seed = 0; family.dodge && seed < kScenes; ++seed) {
       const Scene scene = make_scene(family, seed);
-      IdlePilot pilot;
-      const Outcome outcome = run_trial(scene, pilot);
-      check(outcome.clearance_m < -0.08, "%s:%d: %g m", family.name.c_str(), static_cast<int>(seed),
-            outcome.clearance_m);
-      check_near(outcome.error_rms_m, 0.0, 1e-12);
-      check_near(outcome.turn_rms_rad, 0.0, 1e-7);
+      IdleController controller;
+      const TrialMetrics metrics = run_trial(scene, controller);
+      check(metrics.clearance_m < -0.08, "%s:%d: %g m", family.name.c_str(), static_cast<int>(seed),
+            metrics.clearance_m);
+      check_near(metrics.error_rms_m, 0.0, 1e-12);
+      check_near(metrics.turn_rms_rad, 0.0, 1e-7);
     }
   }
 }
 
-void the_world_waits_until_the_pilot_tracks(void**) {
+void the_scene_is_frozen_until_the_controller_tracks(void**) {
   const Scene scene = make_scene(family_named("chase"), 4);
-  WitnessPilot prompt(scene, 0), slow(scene, 123);
-  const Outcome a = run_trial(scene, prompt), b = run_trial(scene, slow);
+  WitnessController prompt(scene, 0), slow(scene, 123);
+  const TrialMetrics a = run_trial(scene, prompt), b = run_trial(scene, slow);
   check(slow.cycles() == prompt.cycles() + 123, "%d cycles", slow.cycles());
-  check(a.clearance_m == b.clearance_m && a.error_max_m == b.error_max_m, "the same but for the waiting");
+  check(a.clearance_m == b.clearance_m && a.error_max_m == b.error_max_m, "the delay changed the result");
   check_near(slow.sphere().position_m, scene.spheres[0].at(scene.duration_s() - kPeriod_s).position_m, 1e-9);
   check_near(slow.target().position_m, target_at(scene, scene.duration_s() - kPeriod_s).position_m, 1e-9);
 }
 
-void a_pilot_that_never_tracks_is_named(void**) {
+void a_controller_that_never_tracks_is_an_error_with_its_message(void**) {
   const Scene scene = make_scene(family_named("moving"), 4);
-  WitnessPilot never(scene, 1'000'000);
-  check(sidestep::test::one_line_with(sidestep::test::message_of([&] { run_trial(scene, never); }), {"not yet"}),
-        "the pilot's own words are told");
+  WitnessController never_tracking(scene, 1'000'000);
+  check(sidestep::test::one_line_with(sidestep::test::message_of([&] { run_trial(scene, never_tracking); }),
+                                      {"waits for the delay"}),
+        "the message of the controller is missing");
 }
 
-void only_a_controller_that_knows_the_benchmarks_world_is_let_in(void**) {
+void a_configuration_with_surroundings_is_rejected(void**) {
   const auto refusal = [](const char* config) {
     return sidestep::test::message_of([&] { judge_arm_of(sidestep::load_config(config, {})); });
   };
@@ -123,27 +124,27 @@ void only_a_controller_that_knows_the_benchmarks_world_is_let_in(void**) {
   check(sidestep::test::one_line_with(table, {"surroundings: "}), "%s", table.c_str());
 }
 
-/// With a lag of 30 ms the arm is behind a pilot that does not look at it by the lag times the speed.
-class SpinPilot : public Pilot {
+/// Commands a constant velocity. An arm with a lag of 30 ms is then behind by the lag times the velocity.
+class SpinController : public TrialController {
  public:
-  Steering cycle(const Seen& seen) override {
-    q_rad = seen.q_rad;
-    Steering steering;
-    steering.tracking = true;
-    steering.velocity_radps = Joints::Zero(7);
-    steering.velocity_radps[6] = 0.5;
-    return steering;
+  ControllerOutput cycle(const ControllerInput& input) override {
+    q_rad = input.q_rad;
+    ControllerOutput output;
+    output.tracking = true;
+    output.velocity_radps = Joints::Zero(7);
+    output.velocity_radps[6] = 0.5;
+    return output;
   }
   Joints q_rad;
 };
 
-void the_real_arm_lags(void**) {
+void the_arm_of_the_family_real_lags(void**) {
   for (const char* family : {"moving", "real"}) {
     const Scene scene = make_scene(family_named(family), 5);
-    SpinPilot pilot;
-    run_trial(scene, pilot);
+    SpinController controller;
+    run_trial(scene, controller);
     const double ideal_rad = scene.start_rad[6] + 0.5 * (scene.duration_s() - kPeriod_s);
-    check_near(pilot.q_rad[6], ideal_rad - (scene.family->real ? 0.5 * 0.030 : 0.0), 1e-9);
+    check_near(controller.q_rad[6], ideal_rad - (scene.family->real ? 0.5 * 0.030 : 0.0), 1e-9);
   }
 }
 
@@ -165,12 +166,12 @@ void smoothness_of_a_known_stream(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_witness_solves_every_scene),
-      cmocka_unit_test(plain_tracking_solves_none),
-      cmocka_unit_test(an_arm_that_stands_is_hit_by_every_dodge),
-      cmocka_unit_test(the_world_waits_until_the_pilot_tracks),
-      cmocka_unit_test(a_pilot_that_never_tracks_is_named),
-      cmocka_unit_test(only_a_controller_that_knows_the_benchmarks_world_is_let_in),
-      cmocka_unit_test(the_real_arm_lags),
+      cmocka_unit_test(plain_tracking_touches_a_sphere_in_every_scene),
+      cmocka_unit_test(an_arm_at_rest_is_touched_in_every_dodge),
+      cmocka_unit_test(the_scene_is_frozen_until_the_controller_tracks),
+      cmocka_unit_test(a_controller_that_never_tracks_is_an_error_with_its_message),
+      cmocka_unit_test(a_configuration_with_surroundings_is_rejected),
+      cmocka_unit_test(the_arm_of_the_family_real_lags),
       cmocka_unit_test(smoothness_of_a_known_stream),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

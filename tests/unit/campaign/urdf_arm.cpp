@@ -37,7 +37,7 @@ Joints random_joints(test::Random& random, const Limits& range) {
   return q_rad;
 }
 
-void it_is_where_the_benchmarks_own_arm_is(void**) {
+void poses_match_the_benchmarks_lwa3(void**) {
   const UrdfArm arm(load_config("firmware/config/lwa3.yaml", {}));
   test::Random random(1);
   for (int trial = 0; trial < 100; ++trial) {
@@ -47,11 +47,11 @@ void it_is_where_the_benchmarks_own_arm_is(void**) {
     check_near(one.tool_rotation, other.tool_rotation, 1e-9);
     check_near(tool_jacobian(one), tool_jacobian(other), 1e-9);
     const Joints qd_radps = random.joints(7, -1.0, 1.0);
-    check_near(tool_radps(one, qd_radps), tool_radps(other, qd_radps), 1e-9);
+    check_near(tool_angular_velocity(one, qd_radps), tool_angular_velocity(other, qd_radps), 1e-9);
   }
 }
 
-void only_the_lwa3_is_judged_as_the_lwa3(void**) {
+void only_the_lwa3_gets_the_lwa3_model(void**) {
   const auto own = judge_arm_of(load_config("firmware/config/lwa3.yaml", {}));
   assert_non_null(dynamic_cast<const Lwa3Arm*>(own.get()));
   for (const Config& config : other_arms()) {
@@ -66,7 +66,7 @@ std::vector<std::string> configs_with_the_lwa3() {
   return files;
 }
 
-void the_lwa3_with_another_shape_or_limit_is_another_arm(void**) {
+void an_lwa3_with_another_shape_or_limit_gets_the_urdf_model(void**) {
   for (const std::string& file : configs_with_the_lwa3()) {
     const Config config = load_config(file, {});
     const auto is_lwa3 = [](const Config& changed) {
@@ -81,7 +81,7 @@ void the_lwa3_with_another_shape_or_limit_is_another_arm(void**) {
   }
 }
 
-/// A mesh that only the configuration says where it is.
+/// The folder of the mesh is given only in the configuration.
 void meshes_are_found_on_the_configured_package_path(void**) {
   std::filesystem::create_directories(test::scratch_folder() + "/elsewhere/hand");
   test::scratch_file("elsewhere/hand/palm.obj",
@@ -99,13 +99,13 @@ void meshes_are_found_on_the_configured_package_path(void**) {
 
   Scene scene = make_scene(family_named("moving"), 1);
   scene.arm = arm.get();
-  const auto scenario = sim::load_scenario(test::scratch_file("palm-scene.yaml", scenario_yaml(scene))).front();
+  const auto scenario = sim::load_scenario(test::scratch_file("palm-scene.yaml", export_scene(scene))).front();
   const std::string message = test::message_of([&] { sim::Run(scenario, ""); });
   check(message.empty(), "%s", message.c_str());
 }
 
 /// The controller's capsules enclose the surface that the simulator measures.
-void what_is_believed_is_never_more_than_the_truth(void**) {
+void the_controllers_clearance_never_exceeds_the_true_one(void**) {
   for (const Config& config : other_arms()) {
     const UrdfArm arm(config);
     test::Random random(2);
@@ -113,14 +113,14 @@ void what_is_believed_is_never_more_than_the_truth(void**) {
       const ArmPose pose = arm.pose(random_joints(random, arm.range()));
       const Vector3 center_m = random.inside(-0.6, 0.6) + Vector3(0, 0, 0.5);
       const double true_m = arm.clearance(pose, center_m, 0.05);
-      check(true_m < 0.0 || arm.believed_clearance(pose, center_m, 0.05) <= true_m + 1e-6, "%s, trial %d: %g m",
+      check(true_m < 0.0 || arm.controller_clearance(pose, center_m, 0.05) <= true_m + 1e-6, "%s, trial %d: %g m",
             config.robot.urdf.c_str(), trial, true_m);
       check_near(arm.clearance(pose, center_m, 0.05, 0.2), std::min(0.2, true_m), 1e-12);
     }
   }
 }
 
-void every_witness_of_any_arm_is_possible(void**) {
+void the_witness_of_any_arm_keeps_clear_and_within_limits(void**) {
   for (const Config& config : other_arms()) {
     const UrdfArm arm(config);
     const Limits limits = config.model.arm.limits;
@@ -139,8 +139,8 @@ void every_witness_of_any_arm_is_possible(void**) {
   }
 }
 
-/// A sphere that is at the arm only between two periods: fast, and the arm at rest.
-void contact_between_two_periods_is_seen(void**) {
+/// A fast sphere that touches the arm, at rest, only between two periods.
+void contact_between_two_periods_is_detected(void**) {
   const UrdfArm arm(other_arms().front());
   Scene scene = make_scene(family_named("moving"), 1, arm);
   const Vector3 tool_m = arm.pose(scene.start_rad).tool();
@@ -149,22 +149,22 @@ void contact_between_two_periods_is_seen(void**) {
   Judge judge(scene, Joints::Zero(7));
   for (int k = 0; k <= 3; ++k) {
     check(clearance_at(scene, arm.pose(scene.start_rad), k * kPeriod_s) > 0.0, "apart at period %d", k);
-    judge.see(k, scene.start_rad);
+    judge.record_state(k, scene.start_rad);
   }
-  check(judge.verdict().clearance_m < 0.0, "%g m", judge.verdict().clearance_m);
+  check(judge.metrics().clearance_m < 0.0, "%g m", judge.metrics().clearance_m);
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(it_is_where_the_benchmarks_own_arm_is),
-      cmocka_unit_test(only_the_lwa3_is_judged_as_the_lwa3),
-      cmocka_unit_test(the_lwa3_with_another_shape_or_limit_is_another_arm),
+      cmocka_unit_test(poses_match_the_benchmarks_lwa3),
+      cmocka_unit_test(only_the_lwa3_gets_the_lwa3_model),
+      cmocka_unit_test(an_lwa3_with_another_shape_or_limit_gets_the_urdf_model),
       cmocka_unit_test(meshes_are_found_on_the_configured_package_path),
-      cmocka_unit_test(what_is_believed_is_never_more_than_the_truth),
-      cmocka_unit_test(every_witness_of_any_arm_is_possible),
-      cmocka_unit_test(contact_between_two_periods_is_seen),
+      cmocka_unit_test(the_controllers_clearance_never_exceeds_the_true_one),
+      cmocka_unit_test(the_witness_of_any_arm_keeps_clear_and_within_limits),
+      cmocka_unit_test(contact_between_two_periods_is_detected),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
