@@ -101,7 +101,7 @@ void the_arm_starts_only_with_consistent_states_and_known_obstacles(void**) {
   });
 }
 
-void a_start_always_leads_to_hold(void**) {
+void a_start_never_leads_directly_to_track(void**) {
   check_always("hold first", [](const Supervision& last, const auto&, const auto& next) {
     return (last.mode != Mode::kWait && last.mode != Mode::kFault) || next.mode != Mode::kTrack;
   });
@@ -223,7 +223,7 @@ int main() {
       cmocka_unit_test(the_arm_does_not_move_while_another_controller_commands_it),
       cmocka_unit_test(the_arm_does_not_move_without_a_fresh_arm_state),
       cmocka_unit_test(the_arm_starts_only_with_consistent_states_and_known_obstacles),
-      cmocka_unit_test(a_start_always_leads_to_hold),
+      cmocka_unit_test(a_start_never_leads_directly_to_track),
       cmocka_unit_test(a_lost_or_inconsistent_arm_is_a_fault_of_that_name),
       cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh),
       cmocka_unit_test(a_fault_is_named_exactly_in_mode_fault),

@@ -44,7 +44,7 @@ void at_the_targets_orientation_the_rate_is_the_targets_own(void**) {
   check_near(rate, target.angular_velocity_radps, 1e-7);
 }
 
-/// The rate reduces the angle by k_ori per second from any orientation. A quaternion and its negative are one
+/// From any orientation the rate is k_ori times the angle to the target. A quaternion and its negative are one
 /// orientation.
 void the_rate_reduces_the_angle_to_the_target(void**) {
   Random random(1);
