@@ -119,7 +119,7 @@ int end_all(void** state) {
   return test::kill_processes(state);
 }
 
-/// Checks that few cycles are skipped and tracking continues; other load on the machine may cause some of both.
+/// Checks that few cycles are skipped and tracking continues. The limits allow for other load on the machine.
 void check_tracking_continues(LiveScene& scene, const char* what) {
   const Status before = scene.arm.status();
   const size_t first = scene.arm.peer.statuses.size();

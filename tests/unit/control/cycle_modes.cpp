@@ -132,7 +132,7 @@ void a_nominal_velocity_that_is_not_finite_is_a_fault_and_brakes(void**) {
   }
 }
 
-/// With tool_velocity: planned, the velocity starts from the measured one whenever the arm was not tracking before.
+/// With `tool_velocity: planned` tracking always starts from the measured velocity.
 void planned_velocity_is_discarded_while_holding(void**) {
   ClosedLoop loop = tracking("paper");
   loop.model.settings.paper.tool_velocity = ToolVelocity::kPlanned;

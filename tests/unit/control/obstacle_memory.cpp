@@ -18,7 +18,7 @@ Obstacle ball(int32_t id, const Vector3& position_m) {
   return {id, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
 }
 
-/// A sender of sets, one a period.
+/// A memory and a sender of one set per period.
 struct Scene {
   std::unique_ptr<ObstacleMemory> memory = std::make_unique<ObstacleMemory>(kSpeedBound_mps, kMemory_s);
   std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();

@@ -196,7 +196,7 @@ void an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it(void*
   }
 }
 
-/// The closest approach is that of the obstacle's point that is nearest now; `point` stands for that point.
+/// The closest approach is that of the obstacle's nearest point now, which `point` represents.
 void pass_rows_are_the_gradients_of_the_closest_approach(void**) {
   Random random(4);
   int seen = 0;
