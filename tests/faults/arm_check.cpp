@@ -34,7 +34,7 @@ void an_arm_without_oddities_ends_with_code_0(void**) {
   check(ended.code == 0 && has(ended, "7 joints") && !has(ended, "odd:"), "%d: %s", ended.code, ended.output.c_str());
 }
 
-void a_mesh_is_enclosed_and_its_slack_told(void**) {
+void a_mesh_is_enclosed_and_its_slack_reported(void**) {
   // An edge of 0.6 m between two of 0.01 m, given in millimetres.
   scratch_file("rod.obj", "v 0 0 0\nv 600 0 0\nv 0 10 0\nv 0 0 10\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
   const std::string urdf =
@@ -49,7 +49,7 @@ void a_mesh_is_enclosed_and_its_slack_told(void**) {
   check(radius_m < 0.01 && length_m > 0.58 && slack_m > 0.0 && slack_m < 0.02, "%s", ended.output.c_str());
 }
 
-void what_is_odd_is_told_with_code_1(void**) {
+void oddities_are_reported_with_code_1(void**) {
   const std::string urdf =
       replaced(test::text_of("urdf/lwa3.urdf"), R"(lower="-6.25" upper="6.25")", R"(lower="0.1" upper="0.15")");
   const Ended ended = arm_check(scratch_file("odd.urdf", urdf));
@@ -58,16 +58,16 @@ void what_is_odd_is_told_with_code_1(void**) {
         "%d: %s", ended.code, ended.output.c_str());
 }
 
-void what_the_controller_would_refuse_ends_with_code_2_and_one_line(void**) {
+void an_arm_that_the_controller_refuses_ends_with_code_2(void**) {
   const std::string good = test::text_of("urdf/lwa3.urdf");
-  const std::string mesh = replaced(good, kForearm, R"(<mesh filename="package://nobody/none.stl"/>)");
+  const std::string mesh = replaced(good, kForearm, R"(<mesh filename="package://unknown/none.stl"/>)");
   const Ended missing = arm_check(scratch_file("missing.urdf", mesh));
-  check(missing.code == 2 && has(missing, "link 'forearm_link': mesh 'package://nobody/none.stl'"), "%d: %s",
+  check(missing.code == 2 && has(missing, "link 'forearm_link': mesh 'package://unknown/none.stl'"), "%d: %s",
         missing.code, missing.output.c_str());
   assert_int_equal(arm_check("no/such.urdf").code, 2);
 }
 
-void joint_positions_that_are_none_are_refused_with_their_line(void**) {
+void invalid_joint_positions_are_refused_with_their_line(void**) {
   const auto poses = [](const std::string& lines) {
     Process process(
         {"/bin/sh", "-c", "printf '" + lines + "' | build/arm-check urdf/lwa3.urdf --base base_link --tip tool --fk"});
@@ -88,10 +88,10 @@ void joint_positions_that_are_none_are_refused_with_their_line(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(an_arm_without_oddities_ends_with_code_0, test::kill_processes),
-      cmocka_unit_test_teardown(a_mesh_is_enclosed_and_its_slack_told, test::kill_processes),
-      cmocka_unit_test_teardown(what_is_odd_is_told_with_code_1, test::kill_processes),
-      cmocka_unit_test_teardown(joint_positions_that_are_none_are_refused_with_their_line, test::kill_processes),
-      cmocka_unit_test_teardown(what_the_controller_would_refuse_ends_with_code_2_and_one_line, test::kill_processes),
+      cmocka_unit_test_teardown(a_mesh_is_enclosed_and_its_slack_reported, test::kill_processes),
+      cmocka_unit_test_teardown(oddities_are_reported_with_code_1, test::kill_processes),
+      cmocka_unit_test_teardown(invalid_joint_positions_are_refused_with_their_line, test::kill_processes),
+      cmocka_unit_test_teardown(an_arm_that_the_controller_refuses_ends_with_code_2, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -38,7 +38,7 @@ std::vector<std::string> logs(const std::string& reason) {
   return test::logs_in(log_folder(), reason);
 }
 
-/// A controller in real time that follows a target to and fro.
+/// A controller in real time that tracks a target which alternates between two positions.
 struct Scene {
   std::string config = config_with(log_folder());
   Process controller;
@@ -53,42 +53,42 @@ struct Scene {
     track();
   }
 
-  /// Until it has tracked for a second and a half on end. A pause of the machine may have it begin again.
+  /// Runs until the controller has tracked for 1.5 s without interruption. A pause of the machine may interrupt it.
   void track() {
-    int on_end = 0;
-    for (int i = 0; on_end < 6; ++i) {
+    int in_a_row = 0;
+    for (int i = 0; in_a_row < 6; ++i) {
       check(i < 60, "%s", controller.output().c_str());
       arm.target_m = i % 2 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
-      const auto heard = static_cast<std::ptrdiff_t>(arm.peer.statuses.size());
+      const auto received = static_cast<std::ptrdiff_t>(arm.peer.statuses.size());
       arm.run(0.25);
-      const bool all = std::all_of(arm.peer.statuses.begin() + heard, arm.peer.statuses.end(),
+      const bool all = std::all_of(arm.peer.statuses.begin() + received, arm.peer.statuses.end(),
                                    [](const Status& status) { return status.mode == Status::TRACK; });
-      on_end = all ? on_end + 1 : 0;
+      in_a_row = all ? in_a_row + 1 : 0;
     }
   }
 
-  /// Runs on until it is so, for at most limit_s.
+  /// Runs until the condition holds, for at most limit_s.
   template <typename Condition>
   bool await(Condition condition, double limit_s = 1.0) {
     for (double t_s = 0.0; t_s < limit_s && !condition(); t_s += 0.05) arm.run(0.05);
     return condition();
   }
 
-  /// The arm falls silent until the controller has noticed.
-  void fail() {
+  /// Stops the arm states until the controller reports the fault.
+  void stop_arm_states() {
     arm.arm_speaks = false;
     assert_true(arm.run_until(Status::FAULT, 2.0));
   }
 
-  /// Waits until there is a newer log than so many of this reason, and returns the newest. One of a fault may have to
-  /// wait for 4 s after that of a pause of the machine.
+  /// Waits until there are more than `older` logs of this reason and returns the newest. The log of a fault may be
+  /// delayed by the 4 s that pass after one caused by a pause of the machine.
   std::string await_log(const std::string& reason, size_t older) {
     check(await([&] { return logs(reason).size() > older; }, 9.0), "%zu logs: %s", logs(reason).size(),
           controller.output().c_str());
     return logs(reason).back();
   }
 
-  std::string ask_for_log() {
+  std::string request_log() {
     const size_t older = logs("request").size();
     controller.signal(SIGUSR1);
     return await_log("request", older);
@@ -112,18 +112,18 @@ void a_fault_leaves_a_log_that_replays_bit_for_bit(void**) {
   for (const char* law : {"paper", "sidestep"}) {
     Scene scene(law);
     const size_t older = logs("fault").size();
-    scene.fail();
+    scene.stop_arm_states();
     assert_true(agreed(scene.await_log("fault", older)) > 100);
     assert_true(!scene.lacks_blackbox());
   }
 }
 
-/// Soon after one log another fault waits for company, but not beyond the end.
-void a_fault_just_before_the_end_has_its_log(void**) {
+/// The log of a fault soon after another one is delayed, but not beyond the end of the controller.
+void a_fault_just_before_the_end_leaves_a_log(void**) {
   Scene scene;
   const size_t older = logs("fault").size();
   for (int fault = 0; fault < 2; ++fault) {
-    scene.fail();
+    scene.stop_arm_states();
     scene.await_log("fault", older);
     assert_int_equal(logs("fault").size(), older + 1);
     scene.arm.arm_speaks = true;
@@ -135,9 +135,9 @@ void a_fault_just_before_the_end_has_its_log(void**) {
   for (size_t i = older; i < all.size(); ++i) assert_true(agreed(all[i]) > 100);
 }
 
-void a_signal_asks_for_a_log_and_the_arm_moves_on(void**) {
+void a_signal_requests_a_log_and_the_arm_keeps_moving(void**) {
   Scene scene;
-  for (int i = 0; i < 2; ++i) scene.ask_for_log();
+  for (int i = 0; i < 2; ++i) scene.request_log();
   scene.track();
   assert_true(scene.arm.commands.complaint().empty());
   scene.controller.signal(SIGUSR1);
@@ -146,21 +146,21 @@ void a_signal_asks_for_a_log_and_the_arm_moves_on(void**) {
   for (const std::string& log : logs("request")) assert_true(agreed(log) > 100);
 }
 
-void another_configuration_is_found_out(void**) {
+void a_replay_with_another_configuration_is_reported_as_different(void**) {
   Scene scene;
-  const std::string log = scene.ask_for_log();
+  const std::string log = scene.request_log();
   const std::string slower = test::scratch_file(
       "slower.yaml", test::replaced(test::text_of(scene.config), "velocity_radps: [2.0", "velocity_radps: [0.2"));
-  const Replay said = replay(log, {"--config", slower});
-  check(said.code == 1 && one_line_with(last_line(said.output), {" differ, the first in cycle "}), "code %d: %s",
-        said.code, said.output.c_str());
+  const Replay result = replay(log, {"--config", slower});
+  check(result.code == 1 && one_line_with(last_line(result.output), {" differ, the first in cycle "}), "code %d: %s",
+        result.code, result.output.c_str());
 }
 
-/// Cut off anywhere, or with one bit wrong: never a crash, one line (behind LCM's own, should it have one), and no cut
-/// is taken for a whole log.
-void a_damaged_log_is_one_clear_line(void**) {
+/// A log that is cut anywhere or has one wrong bit causes no crash and at most one line of error, behind any line of
+/// LCM. A cut log is always refused.
+void a_damaged_log_is_reported_in_one_line(void**) {
   Scene scene;
-  const std::string text = test::text_of(scene.ask_for_log());
+  const std::string text = test::text_of(scene.request_log());
   test::Random random(1);
   for (int i = 0; i < 60; ++i) {
     const auto at = static_cast<size_t>(random.uniform(0, i % 3 == 0 ? 400.0 : static_cast<double>(text.size())));
@@ -169,22 +169,22 @@ void a_damaged_log_is_one_clear_line(void**) {
       damaged.resize(at);
     else
       damaged[at] = static_cast<char>(damaged[at] ^ (1 << random.index(8)));
-    const Replay said = replay(test::scratch_file("damaged.lcmlog", damaged));
-    check(said.code >= 0 && said.code <= 2, "byte %zu of %zu: code %d: %s", at, text.size(), said.code,
-          said.output.c_str());
-    check(i % 2 == 0 || said.code == 2, "cut at %zu of %zu: %s", at, text.size(), said.output.c_str());
-    const std::string line = last_line(said.output);
-    check(said.code != 2 || one_line_with(line, {"replay: "}), "byte %zu: '%s'", at, line.c_str());
+    const Replay result = replay(test::scratch_file("damaged.lcmlog", damaged));
+    check(result.code >= 0 && result.code <= 2, "byte %zu of %zu: code %d: %s", at, text.size(), result.code,
+          result.output.c_str());
+    check(i % 2 == 0 || result.code == 2, "cut at %zu of %zu: %s", at, text.size(), result.output.c_str());
+    const std::string line = last_line(result.output);
+    check(result.code != 2 || one_line_with(line, {"replay: "}), "byte %zu: '%s'", at, line.c_str());
   }
 }
 
-void files_that_are_no_logs_are_one_clear_line(void**) {
+void files_that_are_no_logs_are_refused_in_one_line(void**) {
   for (const std::string& file :
        {std::string("no/such.lcmlog"), test::scratch_file("empty.lcmlog", ""), std::string("firmware/config/lwa3.yaml"),
         std::string("build"), std::string("/dev/null")}) {
-    const Replay said = replay(file);
-    const std::string line = last_line(said.output);
-    check(said.code == 2 && one_line_with(line, {"replay: ", file}), "%s: code %d: '%s'", file.c_str(), said.code,
+    const Replay result = replay(file);
+    const std::string line = last_line(result.output);
+    check(result.code == 2 && one_line_with(line, {"replay: ", file}), "%s: code %d: '%s'", file.c_str(), result.code,
           line.c_str());
   }
 }
@@ -197,20 +197,20 @@ void check_undisturbed(Scene& scene) {
   check(scene.controller.output().find("blackbox: ") != std::string::npos, "%s", scene.controller.output().c_str());
 }
 
-/// Files end after 64 blocks, as they do on a disk that fills up.
+/// ulimit ends every file after 64 blocks, as a full disk would.
 void a_full_disk_raises_a_flag_and_disturbs_nothing_else(void**) {
   Scene scene("sidestep", "trap '' XFSZ; ulimit -f 64; ");
   check_undisturbed(scene);
   assert_true(scene.await([] { return fs::is_empty(log_folder()); }));
 }
 
-void a_folder_that_cannot_be_made_raises_the_flag_until_it_can(void**) {
+void a_folder_that_cannot_be_created_raises_the_flag_until_it_can(void**) {
   Scene scene;
   fs::remove_all(log_folder());
-  test::scratch_file("logs", "in the way");
+  test::scratch_file("logs", "a file of this name");
   check_undisturbed(scene);
   fs::remove(log_folder());
-  agreed(scene.ask_for_log());
+  agreed(scene.request_log());
   assert_true(scene.await([&] { return !scene.lacks_blackbox(); }));
 }
 
@@ -219,13 +219,13 @@ void a_folder_that_cannot_be_made_raises_the_flag_until_it_can(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(a_fault_leaves_a_log_that_replays_bit_for_bit, test::kill_processes),
-      cmocka_unit_test_teardown(a_fault_just_before_the_end_has_its_log, test::kill_processes),
-      cmocka_unit_test_teardown(a_signal_asks_for_a_log_and_the_arm_moves_on, test::kill_processes),
-      cmocka_unit_test_teardown(another_configuration_is_found_out, test::kill_processes),
-      cmocka_unit_test_teardown(a_damaged_log_is_one_clear_line, test::kill_processes),
-      cmocka_unit_test_teardown(files_that_are_no_logs_are_one_clear_line, test::kill_processes),
+      cmocka_unit_test_teardown(a_fault_just_before_the_end_leaves_a_log, test::kill_processes),
+      cmocka_unit_test_teardown(a_signal_requests_a_log_and_the_arm_keeps_moving, test::kill_processes),
+      cmocka_unit_test_teardown(a_replay_with_another_configuration_is_reported_as_different, test::kill_processes),
+      cmocka_unit_test_teardown(a_damaged_log_is_reported_in_one_line, test::kill_processes),
+      cmocka_unit_test_teardown(files_that_are_no_logs_are_refused_in_one_line, test::kill_processes),
       cmocka_unit_test_teardown(a_full_disk_raises_a_flag_and_disturbs_nothing_else, test::kill_processes),
-      cmocka_unit_test_teardown(a_folder_that_cannot_be_made_raises_the_flag_until_it_can, test::kill_processes),
+      cmocka_unit_test_teardown(a_folder_that_cannot_be_created_raises_the_flag_until_it_can, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

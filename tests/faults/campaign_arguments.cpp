@@ -27,7 +27,7 @@ Answer campaign(const std::string& arguments) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
 }
 
-void bad_arguments_end_with_two(void**) {
+void bad_arguments_end_with_code_2(void**) {
   for (const char* arguments : {"--family slow",
                                 "--count 0",
                                 "--count -3",
@@ -56,7 +56,7 @@ void bad_arguments_end_with_two(void**) {
   }
 }
 
-void a_good_run_ends_with_zero(void**) {
+void a_valid_run_ends_with_code_0(void**) {
   const std::string file = scratch_folder() + "/good.csv";
   const Answer run = campaign("--family moving --count 3 --law plain --quiet --csv " + file);
   check(run.code == 0 && run.err.empty(), "code %d: %s", run.code, run.err.c_str());
@@ -74,14 +74,14 @@ void shards_merge_to_the_table_of_one_run(void**) {
   check(merged.code == 0 && merged.out == whole.out, "%s\n%s", merged.out.c_str(), whole.out.c_str());
 }
 
-void a_twin_is_refused(void**) {
+void merging_a_scene_twice_is_refused(void**) {
   const std::string file = scratch_folder() + "/twin.csv";
   campaign("--family moving --count 2 --law plain --quiet --csv " + file);
   const Answer merged = campaign("merge " + file + " " + file);
   check(merged.code == 2 && merged.out.empty(), "code %d", merged.code);
 }
 
-void an_interrupted_run_keeps_what_is_done(void**) {
+void an_interrupted_run_keeps_its_finished_rows(void**) {
   const std::string file = scratch_folder() + "/cut.csv", err = scratch_folder() + "/cut.err";
   const std::string run = "--family moving --count 100000 --law plain --quiet --csv " + file;
   const int status =
@@ -125,11 +125,11 @@ void hostile_files_are_refused_with_one_line(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(bad_arguments_end_with_two),
-      cmocka_unit_test(a_good_run_ends_with_zero),
+      cmocka_unit_test(bad_arguments_end_with_code_2),
+      cmocka_unit_test(a_valid_run_ends_with_code_0),
       cmocka_unit_test(shards_merge_to_the_table_of_one_run),
-      cmocka_unit_test(a_twin_is_refused),
-      cmocka_unit_test(an_interrupted_run_keeps_what_is_done),
+      cmocka_unit_test(merging_a_scene_twice_is_refused),
+      cmocka_unit_test(an_interrupted_run_keeps_its_finished_rows),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -28,51 +28,52 @@ IiwaDriver start_driver() {
   return IiwaDriver(load_config(kConfig, {}).model.arm.limits, home_rad(), Vector3(0.5, 0.25, 0.6));
 }
 
-void check_content(const IiwaDriver& driver) {
+void check_driver(const IiwaDriver& driver) {
   check(driver.gave_up.empty(), "the driver gave up: %s", driver.gave_up.c_str());
   check(driver.commands.complaint().empty(), "%s", driver.commands.complaint().c_str());
 }
 
-/// Tracks, and is moving.
-void set_out(IiwaDriver& driver, const Process& controller) {
+/// Runs until the controller tracks and the arm moves.
+void start_moving(IiwaDriver& driver, const Process& controller) {
   check(driver.run_until(controller_status_t::TRACK, 10.0), "%s", controller.output().c_str());
   for (int i = 0; i < 100 && driver.speed_radps() < 0.3; ++i) driver.run(0.02);
   check(driver.speed_radps() >= 0.3, "%g rad/s", driver.speed_radps());
 }
 
-void an_iiwa_is_led_from_where_it_is_held_to_the_target(void**) {
+void an_iiwa_moves_from_its_held_position_to_the_target(void**) {
   Process controller = start_controller();
   IiwaDriver driver = start_driver();
-  assert_true(driver.peer.await([&] { return !driver.peer.statuses.empty(); }, 10.0));  // it waits for the driver
-  set_out(driver, controller);
+  assert_true(
+      driver.peer.await([&] { return !driver.peer.statuses.empty(); }, 10.0));  // the controller waits for the driver
+  start_moving(driver, controller);
   driver.run(3.0);
-  check_content(driver);
+  check_driver(driver);
   check(driver.commands.fed() > 250, "%ld commands", driver.commands.fed());
   const controller_status_t& status = driver.peer.statuses.back();
   check(status.target_distance < 0.02, "%g m from the target", status.target_distance);
   assert_int_equal(status.rejected_messages, 0);
 }
 
-/// One that is gone for long, and one that is back while the controller is still braking.
-void a_driver_started_again_is_left_alone_for_its_guard_time(void**) {
+/// The driver is absent for long, then returns while the controller is still braking.
+void a_restarted_driver_receives_no_command_within_its_guard_time(void**) {
   Process controller = start_controller();
   IiwaDriver driver = start_driver();
   for (const double silence_s : {1.0, 0.3}) {
-    set_out(driver, controller);
+    start_moving(driver, controller);
     driver.restart(silence_s);
     driver.run(0.3);
-    check_content(driver);
+    check_driver(driver);
     driver.target_m.y() = -driver.target_m.y();
   }
-  set_out(driver, controller);
-  check_content(driver);
+  start_moving(driver, controller);
+  check_driver(driver);
 }
 
-void a_controller_started_again_goes_on_from_what_the_driver_holds(void**) {
+void a_restarted_controller_continues_from_the_position_that_the_driver_holds(void**) {
   IiwaDriver driver = start_driver();
   {
     Process killed = start_controller();
-    set_out(driver, killed);
+    start_moving(driver, killed);
     killed.signal(SIGKILL);
     killed.wait(1.0);
   }
@@ -82,17 +83,18 @@ void a_controller_started_again_goes_on_from_what_the_driver_holds(void**) {
   check_near(driver.held_rad(), held_rad, 0);
   driver.peer.statuses.clear();
   Process controller = start_controller();
-  set_out(driver, controller);
-  check_content(driver);
+  start_moving(driver, controller);
+  check_driver(driver);
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(an_iiwa_is_led_from_where_it_is_held_to_the_target, test::kill_processes),
-      cmocka_unit_test_teardown(a_driver_started_again_is_left_alone_for_its_guard_time, test::kill_processes),
-      cmocka_unit_test_teardown(a_controller_started_again_goes_on_from_what_the_driver_holds, test::kill_processes),
+      cmocka_unit_test_teardown(an_iiwa_moves_from_its_held_position_to_the_target, test::kill_processes),
+      cmocka_unit_test_teardown(a_restarted_driver_receives_no_command_within_its_guard_time, test::kill_processes),
+      cmocka_unit_test_teardown(a_restarted_controller_continues_from_the_position_that_the_driver_holds,
+                                test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -21,8 +21,8 @@ bool any(const LiveArm& arm, size_t first, const std::function<bool(const Status
   return false;
 }
 
-/// What was missed is counted and left out: no burst of commands, and braking before it goes on.
-void a_controller_stopped_and_continued_brakes_and_goes_on(void**) {
+/// Missed cycles are counted and skipped: the controller sends no burst of commands, and brakes before it tracks again.
+void a_controller_stopped_and_continued_brakes_and_tracks_again(void**) {
   LiveScene scene("sidestep");
   scene.controller.signal(SIGSTOP);
   scene.arm.run(0.5);
@@ -40,8 +40,8 @@ void a_controller_stopped_and_continued_brakes_and_goes_on(void**) {
   check_stream(scene.arm);
 }
 
-/// The simulator or driver is gone and comes back with the arm somewhere else.
-void an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is(void**) {
+/// The simulator or driver ends and restarts with the arm in another configuration.
+void an_arm_that_returns_elsewhere_is_moved_from_its_measured_position(void**) {
   LiveScene scene("sidestep");
   scene.arm.target_speaks = scene.arm.obstacles_speak = scene.arm.arm_speaks = false;
   scene.arm.run(0.4);
@@ -59,8 +59,8 @@ void an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is(void**) {
   check_stream(arm);
 }
 
-/// Like SIGSTOP and SIGCONT to the arm's side: it freezes, and goes on with what it was told meanwhile.
-void an_arm_that_pauses_is_a_fault_and_taken_up_again(void**) {
+/// The arm's side freezes, as by SIGSTOP and SIGCONT, then executes the commands received meanwhile.
+void a_pause_of_the_arm_is_a_fault_and_tracking_resumes(void**) {
   LiveScene scene("sidestep");
   for (int i = 0; i < 3; ++i) {
     const size_t first = scene.arm.peer.statuses.size();
@@ -78,15 +78,15 @@ void a_second_controller_waits_until_the_first_is_gone(void**) {
   Process second = start_controller("sidestep");
   const size_t first = scene.arm.peer.statuses.size();
   scene.wander(1.6);
-  const auto heard_in = [&](int8_t mode) {
+  const auto reported_in = [&](int8_t mode) {
     return any(scene.arm, first, [mode](const Status& s) {
       return s.mode == mode && s.message.find("another controller") != std::string::npos;
     });
   };
-  assert_true(heard_in(Status::WAIT));
-  assert_false(heard_in(Status::BRAKE));
+  assert_true(reported_in(Status::WAIT));
+  assert_false(reported_in(Status::BRAKE));
   scene.arm.target_speaks = false;
-  scene.arm.run(0.8);  // the arm rests
+  scene.arm.run(0.8);  // until the arm rests
   scene.controller.signal(SIGKILL);
   assert_int_equal(scene.controller.wait(1.0), 128 + SIGKILL);
   LiveArm arm(test::lwa3().limits,
@@ -97,22 +97,22 @@ void a_second_controller_waits_until_the_first_is_gone(void**) {
   check_stream(arm);
 }
 
-/// Commands of somebody else while the arm moves: they cannot be stopped, but our own arm motion can.
-void commands_of_somebody_else_brake(void**) {
+/// Foreign commands cannot be prevented, so the controller stops its own motion.
+void foreign_commands_brake(void**) {
   LiveScene scene("sidestep");
   joint_command_t foreign = scene.arm.peer.commands.back();
   foreign.utime += 123456789;
   foreign.seq += 1000000;
-  test::LcmPeer foreign_command;
-  foreign_command.send("ARM_COMMAND", foreign);
-  foreign_command.listen(0.3);
+  test::LcmPeer foreign_controller;
+  foreign_controller.send("ARM_COMMAND", foreign);
+  foreign_controller.listen(0.3);
   bool braked = false;
-  for (const Status& status : foreign_command.statuses)
+  for (const Status& status : foreign_controller.statuses)
     braked |= status.message.find("another controller") != std::string::npos;
   assert_true(braked);
 }
 
-void without_permission_for_real_time_it_runs_and_says_so(void**) {
+void without_permission_for_real_time_the_controller_runs_and_reports_it(void**) {
   Process controller =
       start_controller("sidestep", {"/usr/bin/setpriv", "--bounding-set=-sys_nice,-ipc_lock,-sys_resource",
                                     "/usr/bin/prlimit", "--rtprio=0:0", "--memlock=65536:65536"});
@@ -129,12 +129,14 @@ void without_permission_for_real_time_it_runs_and_says_so(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(a_controller_stopped_and_continued_brakes_and_goes_on, test::kill_processes),
-      cmocka_unit_test_teardown(an_arm_that_comes_back_elsewhere_is_taken_over_where_it_is, test::kill_processes),
-      cmocka_unit_test_teardown(an_arm_that_pauses_is_a_fault_and_taken_up_again, test::kill_processes),
+      cmocka_unit_test_teardown(a_controller_stopped_and_continued_brakes_and_tracks_again, test::kill_processes),
+      cmocka_unit_test_teardown(an_arm_that_returns_elsewhere_is_moved_from_its_measured_position,
+                                test::kill_processes),
+      cmocka_unit_test_teardown(a_pause_of_the_arm_is_a_fault_and_tracking_resumes, test::kill_processes),
       cmocka_unit_test_teardown(a_second_controller_waits_until_the_first_is_gone, test::kill_processes),
-      cmocka_unit_test_teardown(commands_of_somebody_else_brake, test::kill_processes),
-      cmocka_unit_test_teardown(without_permission_for_real_time_it_runs_and_says_so, test::kill_processes),
+      cmocka_unit_test_teardown(foreign_commands_brake, test::kill_processes),
+      cmocka_unit_test_teardown(without_permission_for_real_time_the_controller_runs_and_reports_it,
+                                test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -26,25 +26,25 @@ Process start_controller(const std::string& law) {
                   private_lcm_url()});
 }
 
-/// An ideal arm and a small world on the arm's clock, answered by a controller in another process.
+/// An ideal arm and a small world, in lockstep with a controller in another process.
 class Play {
  public:
   explicit Play(const std::string& law) : controller_(start_controller(law)), q_rad_(JointVector::Zero(7)) {
     q_rad_[1] = M_PI / 2;
     q_rad_[3] = -M_PI / 2;
     qd_radps_ = JointVector::Zero(7);
-    // The controller is there when it answers; until then nobody hears.
+    // Messages are lost until the controller subscribes; its first answer shows that it has.
     for (int i = 0; i < 200 && peer.commands.empty(); ++i) {
       send_arm();
       peer.await([&] { return !peer.statuses.empty(); }, 0.05);
     }
     check(!peer.commands.empty(), "the controller does not answer: %s", controller_.output().c_str());
     peer.listen(0.2);
-    forget();
-    pause(10.0);  // what was sent before is long ago: a fresh start
+    clear();
+    pause(10.0);  // earlier messages are then too old to count
   }
 
-  /// One cycle: the world, then the arm, then the answer.
+  /// One cycle: sends the world, then the arm, and waits for the answer.
   void cycle() {
     send_world();
     answer();
@@ -54,8 +54,8 @@ class Play {
   void send_world() {
     utime_ += kPeriod_us;
     const double t_s = 0.01 * static_cast<double>(cycles_++);
-    const Vector3 place_m(-0.1, 0.3 + 0.05 * std::sin(t_s), 0.8), velocity_mps(0, 0.05 * std::cos(t_s), 0);
-    peer.send("TARGET", target_message(utime_, place_m, velocity_mps));
+    const Vector3 position_m(-0.1, 0.3 + 0.05 * std::sin(t_s), 0.8), velocity_mps(0, 0.05 * std::cos(t_s), 0);
+    peer.send("TARGET", target_message(utime_, position_m, velocity_mps));
     const Vector3 v(0, -0.05, 0);
     peer.send("OBSTACLES", obstacles_message(utime_, {test::sphere(1, Vector3(0.1, 0.5, 0.6) + t_s * v, 0.05, v)}));
   }
@@ -73,7 +73,7 @@ class Play {
 
   void send_arm() { peer.send("ARM_STATE", arm_state_message(utime_, q_rad_, qd_radps_)); }
 
-  void forget() {
+  void clear() {
     peer.commands.clear();
     peer.statuses.clear();
     peer.command_bytes.clear();
@@ -109,8 +109,8 @@ void every_arm_state_is_answered_once_command_first(void**) {
     assert_int_equal(play.peer.commands[i].seq, play.peer.commands[i - 1].seq + 1);
 }
 
-/// States that come faster than they are answered are answered all the same, in order; as many as a socket holds with
-/// the answers, should a busy machine not read it for a while.
+/// States that arrive faster than they are answered are all answered in order. Their number is what a socket can buffer
+/// together with the answers while a busy machine does not read it.
 void a_burst_of_arm_states_is_answered_one_by_one(void**) {
   Play play("paper");
   std::vector<int64_t> sent;
@@ -129,7 +129,7 @@ void a_repeated_arm_state_is_not_answered_again(void**) {
   Play play("paper");
   play.cycle();
   play.cycle();
-  play.forget();
+  play.clear();
   play.send_arm();
   play.peer.listen(0.2);
   assert_string_equal(play.peer.order.c_str(), "");
@@ -137,19 +137,19 @@ void a_repeated_arm_state_is_not_answered_again(void**) {
   assert_string_equal(play.peer.order.c_str(), "cs");
 }
 
-/// The first state after a pause of the arm's clock, twice: the network may do that.
+/// The network duplicates the first state after a pause of the arm's clock.
 void a_repeated_arm_state_after_a_pause_is_not_answered_again(void**) {
   Play play("paper");
   play.cycle();
   play.pause(1.0);
   play.cycle();
-  play.forget();
+  play.clear();
   play.send_arm();
   play.peer.listen(0.2);
   assert_string_equal(play.peer.order.c_str(), "");
 }
 
-void the_arm_is_steered_to_the_target(void**) {
+void the_arm_reaches_the_target(void**) {
   for (const char* law : kLaws) {
     Play play(law);
     for (int i = 0; i < 800; ++i) play.cycle();
@@ -163,13 +163,13 @@ void the_arm_is_steered_to_the_target(void**) {
   }
 }
 
-/// Both answer every state of the arm, with the same utime; neither may lead it then.
-void a_second_controller_brakes_the_arm_for_as_long_as_it_is_there(void**) {
+/// Both controllers answer every arm state with the same utime. Neither may move the arm then.
+void the_arm_rests_while_a_second_controller_runs(void**) {
   Play play("sidestep");
   for (int i = 0; i < 100; ++i) play.cycle();
   assert_int_equal(play.peer.statuses.back().mode, controller_status_t::TRACK);
   Process second = start_controller("paper");
-  play.forget();
+  play.clear();
   for (int i = 0; i < 200 && play.peer.statuses.size() <= static_cast<size_t>(i); ++i) {
     play.cycle();
     play.peer.listen(0.02);
@@ -178,7 +178,7 @@ void a_second_controller_brakes_the_arm_for_as_long_as_it_is_there(void**) {
     play.cycle();
     play.peer.listen(0.005);
   }
-  play.forget();
+  play.clear();
   for (int i = 0; i < 20; ++i) {
     play.cycle();
     play.peer.listen(0.005);
@@ -198,7 +198,7 @@ struct Transcript {
   int64_t rejected = 0, hostile = 0;
 };
 
-/// A message that looks right but for one thing, and its channel.
+/// A valid message with one error, and its channel.
 std::pair<std::string, Bytes> hostile_message(Random& random, int64_t utime) {
   const struct {
     const char* channel;
@@ -228,7 +228,7 @@ std::pair<std::string, Bytes> hostile_message(Random& random, int64_t utime) {
   return {channel, bytes};
 }
 
-/// Plays the same 400 cycles; when hostile, with messages in between that must not change anything.
+/// Plays the same 400 cycles. hostile: with invalid messages in between, which must not change anything.
 Transcript record(const std::string& law, bool hostile) {
   Play play(law);
   Random random(1);
@@ -266,11 +266,11 @@ void two_runs_are_equal_to_the_byte(void**) {
 
 void hostile_messages_are_counted_and_change_nothing(void**) {
   for (const char* law : kLaws) {
-    const Transcript calm = record(law, false), hostile = record(law, true);
+    const Transcript undisturbed = record(law, false), hostile = record(law, true);
     assert_true(hostile.hostile > 300);
     assert_int_equal(hostile.rejected, hostile.hostile);
-    assert_true(hostile.commands == calm.commands);
-    assert_true(hostile.statuses == calm.statuses);
+    assert_true(hostile.commands == undisturbed.commands);
+    assert_true(hostile.statuses == undisturbed.statuses);
   }
 }
 
@@ -282,8 +282,8 @@ int main() {
       cmocka_unit_test_teardown(a_burst_of_arm_states_is_answered_one_by_one, test::kill_processes),
       cmocka_unit_test_teardown(a_repeated_arm_state_is_not_answered_again, test::kill_processes),
       cmocka_unit_test_teardown(a_repeated_arm_state_after_a_pause_is_not_answered_again, test::kill_processes),
-      cmocka_unit_test_teardown(the_arm_is_steered_to_the_target, test::kill_processes),
-      cmocka_unit_test_teardown(a_second_controller_brakes_the_arm_for_as_long_as_it_is_there, test::kill_processes),
+      cmocka_unit_test_teardown(the_arm_reaches_the_target, test::kill_processes),
+      cmocka_unit_test_teardown(the_arm_rests_while_a_second_controller_runs, test::kill_processes),
       cmocka_unit_test_teardown(two_runs_are_equal_to_the_byte, test::kill_processes),
       cmocka_unit_test_teardown(hostile_messages_are_counted_and_change_nothing, test::kill_processes),
   };

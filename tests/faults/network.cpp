@@ -25,18 +25,18 @@ double share_of(int8_t mode, const LiveArm& arm, size_t first) {
   return count / static_cast<double>(arm.peer.statuses.size() - first);
 }
 
-/// A network of its own for what goes to the controller, and a relay from there that follows the rule.
+/// A separate network for the messages to the controller, and a relay that impairs and forwards them by the rule.
 struct BadNetwork {
   LiveScene scene{"sidestep"};
   std::string url = test::private_lcm_url(1);
 
   explicit BadNetwork(const std::string& rule)
       : relay_({"build/relay", "--from", url, "--to", test::private_lcm_url(), "--rule", rule, "--seed", "7"}) {
-    scene.arm.run(0.3);  // until the relay listens
+    scene.arm.run(0.3);  // until the relay receives
     scene.arm.peer.send_to(url);
   }
 
-  /// The network is as good as new: the arm must be tracking soon.
+  /// Ends the impairment. The arm must track within 2 s.
   void heal() {
     relay_.signal(SIGTERM);
     scene.arm.peer.send_to(test::private_lcm_url());
@@ -87,7 +87,7 @@ void corrupted_messages_are_rejected_and_the_others_used(void**) {
   check_stream(network.scene.arm);
 }
 
-/// Sends the same messages over and over from a thread of its own, 10 000 in a second.
+/// Sends 10 000 messages a second from its own thread.
 class Flood {
  public:
   explicit Flood(std::function<void(test::LcmPeer&, int64_t)> send)
@@ -111,7 +111,7 @@ class Flood {
   std::thread thread_;
 };
 
-/// Of the test that runs; a failed check skips destructors.
+/// The flood of the current test. It is global because a failed check skips destructors.
 std::unique_ptr<Flood> flood;
 
 int end_all(void** state) {
@@ -119,8 +119,8 @@ int end_all(void** state) {
   return test::kill_processes(state);
 }
 
-/// The rate is kept as far as the machine lets it, and tracking goes on.
-void check_unmoved(LiveScene& scene, const char* what) {
+/// Checks that few cycles are skipped and tracking continues. The limits allow for other load on the machine.
+void check_tracking_continues(LiveScene& scene, const char* what) {
   const Status before = scene.arm.status();
   const size_t first = scene.arm.peer.statuses.size();
   const int64_t sent = flood->sent();
@@ -143,7 +143,7 @@ void a_flood_of_valid_messages_leaves_the_newest_in_use(void**) {
     peer.send("OBSTACLES",
               test::obstacles_message(n, {test::sphere(5, Vector3(0.9, 0.6, 0.6), 0.05, Vector3::Zero())}));
   });
-  check_unmoved(scene, "valid");
+  check_tracking_continues(scene, "valid");
   check_stream(scene.arm);
 }
 
@@ -154,14 +154,14 @@ void a_flood_of_invalid_messages_is_counted(void**) {
     peer.send_bytes(n % 2 ? "TARGET" : "ARM_STATE", bytes);
   });
   const int64_t rejected = scene.arm.status().rejected_messages, sent = flood->sent();
-  check_unmoved(scene, "invalid");
+  check_tracking_continues(scene, "invalid");
   const auto counted = static_cast<double>(scene.arm.status().rejected_messages - rejected);
   check(counted > 0.3 * static_cast<double>(flood->sent() - sent), "%g counted", counted);
   check_stream(scene.arm);
 }
 
-/// Whatever the senders' clock says, messages are judged by when they arrive.
-void a_clock_that_jumps_costs_at_most_a_new_start(void**) {
+/// The age of a message follows from its time of receipt, not from its utime.
+void a_jump_of_the_senders_clock_costs_at_most_a_restart(void**) {
   LiveScene scene("sidestep");
   for (const double jump_s : {3600.0, -3600.0, -0.05, 0.2, -1e6, 1e6}) {
     scene.arm.clock_offset_us += static_cast<int64_t>(jump_s * 1e6);
@@ -180,7 +180,7 @@ int main() {
       cmocka_unit_test_teardown(corrupted_messages_are_rejected_and_the_others_used, end_all),
       cmocka_unit_test_teardown(a_flood_of_valid_messages_leaves_the_newest_in_use, end_all),
       cmocka_unit_test_teardown(a_flood_of_invalid_messages_is_counted, end_all),
-      cmocka_unit_test_teardown(a_clock_that_jumps_costs_at_most_a_new_start, end_all),
+      cmocka_unit_test_teardown(a_jump_of_the_senders_clock_costs_at_most_a_restart, end_all),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -19,12 +19,12 @@ Process start_controller(const std::string& rate) {
                   test::private_lcm_url()});
 }
 
-/// Receives LOOP_TIMING beside the arm.
-struct TimingListener {
+/// Subscribes to LOOP_TIMING.
+struct TimingSubscriber {
   lcm::LCM lcm{test::private_lcm_url()};
   std::vector<loop_timing_t> received;
 
-  TimingListener() { lcm.subscribe("LOOP_TIMING", &TimingListener::on_timing, this); }
+  TimingSubscriber() { lcm.subscribe("LOOP_TIMING", &TimingSubscriber::on_timing, this); }
   void on_timing(const lcm::ReceiveBuffer*, const std::string&, const loop_timing_t* timing) {
     received.push_back(*timing);
   }
@@ -34,7 +34,7 @@ struct TimingListener {
   }
 };
 
-/// Every command follows the one before in a thousandth of a second, within the limits.
+/// Commands are 1 ms apart and within the limits.
 void a_loop_at_1000_hz_moves_the_arm_within_its_limits(void**) {
   Process controller = start_controller("1000");
   LiveArm arm(test::lwa3().limits, test::home_rad(), 0.001);
@@ -59,7 +59,7 @@ void a_loop_at_1000_hz_moves_the_arm_within_its_limits(void**) {
   check(arm.commands.complaint().empty(), "%s", arm.commands.complaint().c_str());
 }
 
-void the_cycle_itself_follows_the_rate(void**) {
+void one_cycle_integrates_over_the_configured_period(void**) {
   for (const char* law : {"paper", "sidestep"}) {
     Model model = test::lwa3_model(law);
     model.settings.rate_hz = 1000.0;
@@ -74,27 +74,27 @@ void the_cycle_itself_follows_the_rate(void**) {
   }
 }
 
-void the_times_of_the_loop_are_published_once_a_second(void**) {
-  TimingListener listener;
+void loop_timing_is_published_once_a_second(void**) {
+  TimingSubscriber timing_subscriber;
   Process controller = start_controller("200");
   LiveArm arm(test::lwa3().limits, test::home_rad(), 0.005);
   arm.target_m = Vector3(0.1, 0.45, 0.7);
   check(arm.run_until(Status::TRACK, 10.0), "%s", controller.output().c_str());
-  listener.drain();
-  listener.received.clear();
+  timing_subscriber.drain();
+  timing_subscriber.received.clear();
   arm.run(3.0);
-  listener.drain();
-  const auto count = static_cast<int>(listener.received.size());
+  timing_subscriber.drain();
+  const auto count = static_cast<int>(timing_subscriber.received.size());
   check(count >= 2 && count <= 4, "%d messages in 3 s", count);
-  const loop_timing_t& last = listener.received.back();
+  const loop_timing_t& last = timing_subscriber.received.back();
   check_near(last.period, 0.005, 0.0);
-  assert_true(last.cycles > listener.received.front().cycles);
+  assert_true(last.cycles > timing_subscriber.received.front().cycles);
   for (const durations_t& d :
        {last.wake_latency, last.cycle, last.monitor, last.clearance, last.law, last.shield, last.gate})
     check(d.p50 > 0.0 && d.p50 <= d.p99 && d.p99 <= d.p999 && d.p999 <= d.worst && d.worst < 1.0, "%g %g %g %g", d.p50,
           d.p99, d.p999, d.worst);
   check(last.monitor.p50 + last.clearance.p50 + last.law.p50 + last.shield.p50 + last.gate.p50 < 2.0 * last.cycle.p50,
-        "stages and cycle, %g s", last.cycle.p50);
+        "the stages take more than twice the cycle, %g s", last.cycle.p50);
 }
 
 void a_rate_out_of_range_is_refused(void**) {
@@ -110,8 +110,8 @@ void a_rate_out_of_range_is_refused(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(a_loop_at_1000_hz_moves_the_arm_within_its_limits, test::kill_processes),
-      cmocka_unit_test(the_cycle_itself_follows_the_rate),
-      cmocka_unit_test_teardown(the_times_of_the_loop_are_published_once_a_second, test::kill_processes),
+      cmocka_unit_test(one_cycle_integrates_over_the_configured_period),
+      cmocka_unit_test_teardown(loop_timing_is_published_once_a_second, test::kill_processes),
       cmocka_unit_test_teardown(a_rate_out_of_range_is_refused, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

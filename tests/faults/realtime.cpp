@@ -17,7 +17,7 @@ namespace {
 using Status = controller_status_t;
 const char* const kLaws[] = {"paper", "sidestep"};
 
-/// Statuses and skipped cycles together, so that a busy machine does not count.
+/// Skipped cycles are counted with the others, so that a busy machine does not change the rate.
 void the_loop_holds_its_rate(void**) {
   for (const char* law : kLaws) {
     Scene scene(law);
@@ -37,7 +37,7 @@ void the_loop_holds_its_rate(void**) {
   }
 }
 
-void it_waits_silently_for_the_arm(void**) {
+void no_command_is_sent_before_the_first_arm_state(void**) {
   LiveArm arm{test::lwa3().limits, test::home_rad()};
   arm.arm_speaks = false;
   Process controller = start_controller("sidestep");
@@ -49,7 +49,7 @@ void it_waits_silently_for_the_arm(void**) {
   assert_true(arm.run_until(Status::TRACK, 3.0));
 }
 
-void an_arm_that_falls_silent_is_braked_and_then_a_fault(void**) {
+void missing_arm_states_brake_and_then_are_a_fault(void**) {
   for (const char* law : kLaws) {
     Scene scene(law);
     scene.arm.arm_speaks = false;
@@ -67,7 +67,7 @@ void an_arm_that_falls_silent_is_braked_and_then_a_fault(void**) {
   }
 }
 
-void old_obstacles_brake_and_an_old_target_is_held(void**) {
+void old_obstacles_brake_and_an_old_target_leads_to_hold(void**) {
   Scene scene("sidestep");
   scene.arm.obstacles_speak = false;
   assert_true(scene.arm.run_until(Status::BRAKE, 1.0));
@@ -99,7 +99,7 @@ void a_signal_brakes_to_rest_and_ends_with_code_0(void**) {
   }
 }
 
-void every_command_of_a_live_run_can_be_followed(void**) {
+void the_arm_can_follow_every_command_of_a_live_run(void**) {
   for (const char* law : kLaws) {
     Scene scene(law);
     scene.wander(3.2);
@@ -108,7 +108,7 @@ void every_command_of_a_live_run_can_be_followed(void**) {
   }
 }
 
-/// Thousands of bad messages a second on every channel: counted, and the arm moves on.
+/// Thousands of bad messages a second on every channel are counted, and the arm keeps tracking.
 void a_flood_of_hostile_messages_changes_nothing(void**) {
   Scene scene("sidestep");
   const int64_t rejected = scene.arm.status().rejected_messages;
@@ -136,8 +136,8 @@ void a_flood_of_hostile_messages_changes_nothing(void**) {
   check_stream(scene.arm);
 }
 
-/// Killed without a chance to brake, and started again while the arm is somewhere on its way.
-void a_controller_killed_and_started_again_goes_on_without_a_jump(void**) {
+/// The controller is killed without braking and restarted while the arm is between start and target.
+void a_killed_and_restarted_controller_continues_without_a_jump(void**) {
   Scene scene("sidestep");
   scene.controller.signal(SIGKILL);
   assert_int_equal(scene.controller.wait(1.0), 128 + SIGKILL);
@@ -157,13 +157,13 @@ void a_controller_killed_and_started_again_goes_on_without_a_jump(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(the_loop_holds_its_rate, test::kill_processes),
-      cmocka_unit_test_teardown(it_waits_silently_for_the_arm, test::kill_processes),
-      cmocka_unit_test_teardown(an_arm_that_falls_silent_is_braked_and_then_a_fault, test::kill_processes),
-      cmocka_unit_test_teardown(old_obstacles_brake_and_an_old_target_is_held, test::kill_processes),
+      cmocka_unit_test_teardown(no_command_is_sent_before_the_first_arm_state, test::kill_processes),
+      cmocka_unit_test_teardown(missing_arm_states_brake_and_then_are_a_fault, test::kill_processes),
+      cmocka_unit_test_teardown(old_obstacles_brake_and_an_old_target_leads_to_hold, test::kill_processes),
       cmocka_unit_test_teardown(a_signal_brakes_to_rest_and_ends_with_code_0, test::kill_processes),
-      cmocka_unit_test_teardown(every_command_of_a_live_run_can_be_followed, test::kill_processes),
+      cmocka_unit_test_teardown(the_arm_can_follow_every_command_of_a_live_run, test::kill_processes),
       cmocka_unit_test_teardown(a_flood_of_hostile_messages_changes_nothing, test::kill_processes),
-      cmocka_unit_test_teardown(a_controller_killed_and_started_again_goes_on_without_a_jump, test::kill_processes),
+      cmocka_unit_test_teardown(a_killed_and_restarted_controller_continues_without_a_jump, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -25,7 +25,7 @@ std::string log_folder(const std::string& name) {
   return test::scratch_folder() + "/" + name;
 }
 
-/// A configuration whose logs go to a folder of that name.
+/// A configuration that writes its logs to a folder of that name.
 std::string config_file(const std::string& name, const std::string& text) {
   return test::scratch_file(name + ".yaml",
                             test::replaced(text, "folder: build/blackbox", "folder: " + log_folder(name)));
@@ -35,15 +35,14 @@ std::vector<std::string> controller(const std::string& config) {
   return {"build/controller", "--config", config, "--lcm-url", test::private_lcm_url()};
 }
 
-/// The log that was asked for of a controller that has ended, which is done with writing it; the number of cycles that
-/// agree.
-int agreed_in(const std::string& name) {
+/// Replays the requested log of a controller that has ended. Returns the number of cycles that agree.
+int replay_request(const std::string& name) {
   const std::vector<std::string> logs = logs_in(log_folder(name), "request");
   assert_int_equal(logs.size(), 1);
   return agreed(logs.front());
 }
 
-void what_an_iiwa_was_told_replays_bit_for_bit(void**) {
+void a_log_of_an_iiwa_replays_bit_for_bit(void**) {
   const std::string config = config_file("iiwa", text_of("firmware/config/iiwa14-drake.yaml"));
   Process process(controller(config));
   JointVector home_rad = JointVector::Zero(7);
@@ -56,11 +55,11 @@ void what_an_iiwa_was_told_replays_bit_for_bit(void**) {
   process.signal(SIGTERM);
   driver.run(1.0);
   assert_int_equal(process.wait(5.0), 0);
-  assert_true(agreed_in("iiwa") > 100);
+  assert_true(replay_request("iiwa") > 100);
 }
 
-/// A neighbour's link that moves through the room, ten times as often as it has to be heard.
-void run_beside_a_neighbour(test::LiveArm& arm, double duration_s) {
+/// Runs while a neighbour sends a moving link, ten times as often as its timeout requires.
+void run_with_neighbour(test::LiveArm& arm, double duration_s) {
   for (double t_s = 0.0; t_s < duration_s; t_s += 0.01) {
     static int64_t utime = 0;
     utime += 10000;
@@ -70,7 +69,7 @@ void run_beside_a_neighbour(test::LiveArm& arm, double duration_s) {
   }
 }
 
-void what_was_done_among_surroundings_beside_a_neighbour_replays_bit_for_bit(void**) {
+void a_log_with_surroundings_and_a_neighbour_replays_bit_for_bit(void**) {
   std::string text = text_of("firmware/config/lwa3.yaml");
   text = test::replaced(text, "listen: []", "listen: [LINKS_2]");
   text = test::replaced(text, "surroundings: []",
@@ -79,25 +78,24 @@ void what_was_done_among_surroundings_beside_a_neighbour_replays_bit_for_bit(voi
   test::LiveArm arm(test::lwa3().limits, test::home_rad());
   arm.target_m = Vector3(0.1, 0.45, 0.7);
   for (int i = 0; i < 100 && (arm.peer.statuses.empty() || arm.status().mode != Status::TRACK); ++i)
-    run_beside_a_neighbour(arm, 0.2);
+    run_with_neighbour(arm, 0.2);
   check(!arm.peer.statuses.empty() && arm.status().mode == Status::TRACK, "%s", process.output().c_str());
   arm.target_m = Vector3(-0.4, 0.1, 0.9);
-  run_beside_a_neighbour(arm, 1.5);
+  run_with_neighbour(arm, 1.5);
   process.signal(SIGUSR1);
-  run_beside_a_neighbour(arm, 0.5);
+  run_with_neighbour(arm, 0.5);
   process.signal(SIGTERM);
-  run_beside_a_neighbour(arm, 1.0);
+  run_with_neighbour(arm, 1.0);
   assert_int_equal(process.wait(5.0), 0);
-  assert_true(agreed_in("room") > 100);
+  assert_true(replay_request("room") > 100);
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(what_an_iiwa_was_told_replays_bit_for_bit, test::kill_processes),
-      cmocka_unit_test_teardown(what_was_done_among_surroundings_beside_a_neighbour_replays_bit_for_bit,
-                                test::kill_processes),
+      cmocka_unit_test_teardown(a_log_of_an_iiwa_replays_bit_for_bit, test::kill_processes),
+      cmocka_unit_test_teardown(a_log_with_surroundings_and_a_neighbour_replays_bit_for_bit, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

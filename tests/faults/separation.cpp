@@ -16,7 +16,7 @@ constexpr int kLatePeriods = 8;
 constexpr double kNoise_m = 0.03;
 constexpr int kRuns = 60;
 
-/// What a sensor says of the obstacles: late and not exact.
+/// A sensor that reports obstacles late and with random errors of position.
 class Sensor {
  public:
   const ObstacleSet& measure(const ObstacleSet& now, Random& random) {
@@ -43,7 +43,7 @@ double true_clearance_m(const ClosedLoop& loop) {
   return measure_clearance(loop.model.arm, poses, truth, {0.4, 0.0}).nearest.distance_m;
 }
 
-/// A sphere that crosses the arm's room while the arm keeps its tool at a target; the least distance between the two.
+/// Least distance between the arm, which keeps its tool at a target, and a sphere that crosses its workspace.
 double least_clearance_m(const ObstacleTrust& trust, unsigned seed) {
   Random random(seed);
   ClosedLoop loop = test::tracking("sidestep");
@@ -64,36 +64,38 @@ double least_clearance_m(const ObstacleTrust& trust, unsigned seed) {
   return least_m;
 }
 
-struct Found {
+struct Clearances {
   int contacts = 0, below_hard = 0;
   double worst_m = 1.0, mean_m = 0.0;
 };
 
-Found play(const char* name, const ObstacleTrust& trust) {
-  Found found;
+Clearances play(const char* name, const ObstacleTrust& trust) {
+  Clearances clearances;
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
     const double least_m = least_clearance_m(trust, seed);
-    found.contacts += least_m <= 0.0;
-    found.below_hard += least_m < ShieldSettings().hard_clearance_m;
-    found.worst_m = std::min(found.worst_m, least_m);
-    found.mean_m += least_m / kRuns;
+    clearances.contacts += least_m <= 0.0;
+    clearances.below_hard += least_m < ShieldSettings().hard_clearance_m;
+    clearances.worst_m = std::min(clearances.worst_m, least_m);
+    clearances.mean_m += least_m / kRuns;
   }
   print_message("%-24s least clearance %.3f m, mean of the least %.3f m, %d contacts, %d below the hard clearance\n",
-                name, found.worst_m, found.mean_m, found.contacts, found.below_hard);
-  return found;
+                name, clearances.worst_m, clearances.mean_m, clearances.contacts, clearances.below_hard);
+  return clearances;
 }
 
-/// 80 ms late and 3 cm wrong: what is told of the sensor is kept as distance.
-void late_and_uncertain_obstacles_are_kept_away_from_when_that_is_known(void**) {
-  const Found blind = play("nothing known", {});
+/// The sensor is 80 ms late and wrong by up to 3 cm. The configured errors are added to the clearance.
+void configured_latency_and_uncertainty_increase_the_clearance(void**) {
+  const Clearances unconfigured = play("nothing configured", {});
   play("latency", {0.08, 0.0, 0.0});
   play("uncertainty", {0.0, kNoise_m, 0.0});
-  const Found known = play("latency, uncertainty", {0.08, kNoise_m, 0.0});
-  check(known.below_hard <= blind.below_hard, "%d below, %d before", known.below_hard, blind.below_hard);
-  check(known.worst_m > blind.worst_m && known.mean_m > blind.mean_m + 0.01, "%g m", known.worst_m);
+  const Clearances configured = play("latency, uncertainty", {0.08, kNoise_m, 0.0});
+  check(configured.below_hard <= unconfigured.below_hard, "%d below, %d before", configured.below_hard,
+        unconfigured.below_hard);
+  check(configured.worst_m > unconfigured.worst_m && configured.mean_m > unconfigured.mean_m + 0.01, "%g m",
+        configured.worst_m);
 }
 
-void what_may_have_happened_since_grows_with_age_and_stays_within_the_speed_bound(void**) {
+void an_obstacle_grows_by_its_uncertainty_and_with_its_age(void**) {
   ClosedLoop loop = test::at_home("sidestep");
   loop.model.settings.obstacle_trust = {0.05, 0.02, 4.0};
   loop.add_sphere(Vector3(1.5, 0, 0.5), Vector3(0.3, 0, 0));
@@ -110,8 +112,8 @@ void what_may_have_happened_since_grows_with_age_and_stays_within_the_speed_boun
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(late_and_uncertain_obstacles_are_kept_away_from_when_that_is_known),
-      cmocka_unit_test(what_may_have_happened_since_grows_with_age_and_stays_within_the_speed_bound),
+      cmocka_unit_test(configured_latency_and_uncertainty_increase_the_clearance),
+      cmocka_unit_test(an_obstacle_grows_by_its_uncertainty_and_with_its_age),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

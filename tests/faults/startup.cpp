@@ -22,7 +22,7 @@ std::vector<std::string> controller(std::vector<std::string> arguments) {
   return arguments;
 }
 
-/// What was printed, without its line end.
+/// The output without its line end.
 std::string line_of(const std::string& output) {
   return output.substr(0, output.find_last_not_of('\n') + 1);
 }
@@ -74,7 +74,7 @@ void wrong_arguments_end_with_code_2(void**) {
   }
 }
 
-void the_simulator_waits_only_for_a_time_that_can_be(void**) {
+void an_impossible_waiting_time_of_the_simulator_is_refused(void**) {
   for (const char* wait : {"nan", "-nan", "inf", "0", "-1", "soon", ""}) {
     Process process({"build/sim", "--scenario", "host/scenarios/paper-c.yaml", "--wait", wait});
     check(process.wait(kLimit_s) == 2, "%s: %s", wait, process.output().c_str());
@@ -82,21 +82,21 @@ void the_simulator_waits_only_for_a_time_that_can_be(void**) {
   }
 }
 
-void help_is_given(void**) {
+void help_names_the_options(void**) {
   Process process({"build/controller", "--help"});
   assert_int_equal(process.wait(kLimit_s), 0);
   for (const char* word : {"--config", "--law", "--lockstep", "--lcm-url", "--urdf", "--base", "--tip"})
-    check(process.output().find(word) != std::string::npos, "no word of %s", word);
+    check(process.output().find(word) != std::string::npos, "%s is missing", word);
 }
 
-void a_network_that_cannot_be_used_ends_with_code_1_and_a_line(void**) {
+void an_unusable_network_ends_with_code_1_and_a_message(void**) {
   Process process({"build/controller", "--config", "firmware/config/lwa3.yaml", "--lcm-url", "carrier-pigeon://"});
   assert_int_equal(process.wait(kLimit_s), 1);
   check(process.output().find("controller: LCM: cannot use the network 'carrier-pigeon://'") != std::string::npos, "%s",
         process.output().c_str());
 }
 
-void it_starts_without_a_file_from_urdf_base_and_tip(void**) {
+void the_controller_starts_from_urdf_base_and_tip_without_a_config(void**) {
   LcmPeer peer;
   Process process(controller({"--urdf", "urdf/lwa3.urdf", "--base", "base_link", "--tip", "tool"}));
   check(peer.await([&] { return peer.statuses.size() > 3; }, kLimit_s), "%s", process.output().c_str());
@@ -105,7 +105,7 @@ void it_starts_without_a_file_from_urdf_base_and_tip(void**) {
   assert_int_equal(process.wait(kLimit_s), 0);
 }
 
-void asked_to_stop_before_anything_came_it_ends_at_once(void**) {
+void a_signal_before_the_first_message_ends_the_controller(void**) {
   for (const int signal : {SIGTERM, SIGINT}) {
     for (const char* lockstep : {"", "--lockstep"}) {
       std::vector<std::string> arguments = {"--config", "firmware/config/lwa3.yaml"};
@@ -126,11 +126,11 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(a_bad_config_ends_with_code_2_and_one_line_and_publishes_nothing, test::kill_processes),
       cmocka_unit_test_teardown(wrong_arguments_end_with_code_2, test::kill_processes),
-      cmocka_unit_test_teardown(the_simulator_waits_only_for_a_time_that_can_be, test::kill_processes),
-      cmocka_unit_test_teardown(help_is_given, test::kill_processes),
-      cmocka_unit_test_teardown(a_network_that_cannot_be_used_ends_with_code_1_and_a_line, test::kill_processes),
-      cmocka_unit_test_teardown(it_starts_without_a_file_from_urdf_base_and_tip, test::kill_processes),
-      cmocka_unit_test_teardown(asked_to_stop_before_anything_came_it_ends_at_once, test::kill_processes),
+      cmocka_unit_test_teardown(an_impossible_waiting_time_of_the_simulator_is_refused, test::kill_processes),
+      cmocka_unit_test_teardown(help_names_the_options, test::kill_processes),
+      cmocka_unit_test_teardown(an_unusable_network_ends_with_code_1_and_a_message, test::kill_processes),
+      cmocka_unit_test_teardown(the_controller_starts_from_urdf_base_and_tip_without_a_config, test::kill_processes),
+      cmocka_unit_test_teardown(a_signal_before_the_first_message_ends_the_controller, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

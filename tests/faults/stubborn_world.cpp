@@ -21,15 +21,15 @@ Vector3 tool_m(const ClosedLoop& loop) {
   return forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position;
 }
 
-/// How much the joints move to and fro in a second, at the end of a run, rad.
-double restlessness_rad(ClosedLoop& loop) {
-  double way_rad = 0.0;
+/// Length of the joint path within one second beyond the net displacement, rad.
+double oscillation_rad(ClosedLoop& loop) {
+  double path_rad = 0.0;
   const JointVector before_rad = loop.arm.position_rad;
   for (int i = 0; i < 100; ++i) {
     loop.cycle();
-    way_rad += loop.arm.velocity_radps.cwiseAbs().sum() * loop.model.settings.period_s();
+    path_rad += loop.arm.velocity_radps.cwiseAbs().sum() * loop.model.settings.period_s();
   }
-  return way_rad - (loop.arm.position_rad - before_rad).cwiseAbs().sum();
+  return path_rad - (loop.arm.position_rad - before_rad).cwiseAbs().sum();
 }
 
 void an_unreachable_target_is_approached_as_far_as_the_arm_reaches(void**) {
@@ -41,14 +41,14 @@ void an_unreachable_target_is_approached_as_far_as_the_arm_reaches(void**) {
       // The shoulder is 0.3 m above the base and the arm about 1 m long.
       const Vector3 shoulder_m(0, 0, 0.3);
       const double reached = (tool_m(loop) - shoulder_m).dot((target_m - shoulder_m).normalized());
-      const double restless_rad = restlessness_rad(loop);
-      print_message("%-8s (%g, %g, %g): %.3f m out, %.4f rad to and fro in a second\n", law, target_m.x(), target_m.y(),
-                    target_m.z(), reached, restless_rad);
+      const double oscillating_rad = oscillation_rad(loop);
+      print_message("%-8s (%g, %g, %g): %.3f m out, %.4f rad of oscillation in a second\n", law, target_m.x(),
+                    target_m.y(), target_m.z(), reached, oscillating_rad);
       check_stream(loop);
       check(loop.mode() == Mode::kTrack, "%s", loop.last.report.message);
-      if (loop.model.settings.law == Law::kPaper) continue;  // it has no word on targets out of reach
+      if (loop.model.settings.law == Law::kPaper) continue;  // the paper does not treat targets out of reach
       check(reached > 0.7, "%g m", reached);
-      check(restless_rad < 0.05, "%g rad", restless_rad);
+      check(oscillating_rad < 0.05, "%g rad", oscillating_rad);
     }
   }
 }
@@ -71,16 +71,16 @@ void a_teleported_target_never_makes_the_commands_jump(void**) {
   }
 }
 
-/// An obstacle inside a link, at the start and whatever the target says: the distance opens until there is room.
-void in_contact_at_the_start_the_distance_only_opens(void**) {
+/// A sphere overlaps a link at the start. Whatever the target, the distance grows up to the hard clearance.
+void in_contact_at_the_start_the_distance_only_grows(void**) {
   Random random(4);
-  int played = 0;
-  while (played < 20) {
+  int scenes = 0;
+  while (scenes < 20) {
     ClosedLoop loop = test::at_home("sidestep");
     const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
     const int s = random.index(static_cast<int>(loop.model.arm.shapes.size()));
     const LinkShape& shape = loop.model.arm.shapes[static_cast<size_t>(s)];
-    if (shape.body < 3) continue;  // what hardly moves cannot get away
+    if (shape.body < 3) continue;  // links near the base hardly move
     const Capsule link = transformed(poses, shape);
     const Vector3 aside = (link.radius_m + 0.03) * random.direction();
     loop.add_sphere(0.5 * (link.start + link.end) + aside, Vector3::Zero(), 0.05);
@@ -88,7 +88,7 @@ void in_contact_at_the_start_the_distance_only_opens(void**) {
     assert_true(loop.run_until(Mode::kHold, 1.0));
     const double start_m = loop.last.report.clearance_m;
     if (start_m > 0.0) continue;
-    ++played;
+    ++scenes;
     double before_m = start_m, worst_m = 0.0;
     for (int i = 0; i < 300; ++i) {
       loop.cycle();
@@ -98,20 +98,20 @@ void in_contact_at_the_start_the_distance_only_opens(void**) {
       before_m = clearance_m;
     }
     check_stream(loop);
-    check(worst_m < 1e-3, "shape %d: the distance closed by %g m in a cycle", s, worst_m);
-    check(before_m > std::min(0.0, start_m), "shape %d: %g m at first, %g m at last", s, start_m, before_m);
+    check(worst_m < 1e-3, "shape %d: the distance shrank by %g m in a cycle", s, worst_m);
+    check(before_m > std::min(0.0, start_m), "shape %d: %g m at the start, %g m at the end", s, start_m, before_m);
   }
 }
 
-/// The arm keeps clear of the place that the obstacle has left as long as it counts.
-void an_obstacle_that_jumps_counts_in_both_places(void**) {
+/// The position that the obstacle has left counts for timeouts.coast_s.
+void an_obstacle_that_jumps_counts_at_both_positions(void**) {
   ClosedLoop loop = tracking("sidestep");
   const Timeouts timeouts;
   const auto obstacle_memory =
       std::make_unique<ObstacleMemory>(loop.model.settings.obstacle_speed_bound_mps, timeouts.coast_s);
-  const auto send = [&](const Vector3& place_m) {
+  const auto send = [&](const Vector3& centre_m) {
     loop.obstacles->count = 0;
-    loop.add_sphere(place_m, Vector3::Zero(), 0.1);
+    loop.add_sphere(centre_m, Vector3::Zero(), 0.1);
     obstacle_memory->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
     loop.cycle();
     return loop.last.report.clearance_m;
@@ -119,9 +119,9 @@ void an_obstacle_that_jumps_counts_in_both_places(void**) {
   const Vector3 near_m = tool_m(loop) + Vector3(-0.3, 0, 0), far_m(1.5, 1.5, 1.5);
   for (int i = 0; i < 5; ++i) send(near_m);
   assert_true(loop.last.report.clearance_m < 0.3);
-  double held_s = 0.0;
-  while (send(far_m) < 0.4 && held_s < 2.0) held_s += loop.model.settings.period_s();
-  check_near(held_s, timeouts.coast_s, 0.011);
+  double counted_s = 0.0;
+  while (send(far_m) < 0.4 && counted_s < 2.0) counted_s += loop.model.settings.period_s();
+  check_near(counted_s, timeouts.coast_s, 0.011);
   assert_true(loop.last.report.clearance_m > 0.8);
   check_stream(loop);
 }
@@ -132,8 +132,8 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(an_unreachable_target_is_approached_as_far_as_the_arm_reaches),
       cmocka_unit_test(a_teleported_target_never_makes_the_commands_jump),
-      cmocka_unit_test(in_contact_at_the_start_the_distance_only_opens),
-      cmocka_unit_test(an_obstacle_that_jumps_counts_in_both_places),
+      cmocka_unit_test(in_contact_at_the_start_the_distance_only_grows),
+      cmocka_unit_test(an_obstacle_that_jumps_counts_at_both_positions),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -26,7 +26,8 @@ struct Played {
   std::string text;
 };
 
-/// Two controllers and a simulator with both arms, which judges them by FCL, in lockstep; csv: of the simulator.
+/// Two controllers in lockstep with a simulator of both arms, which measures their distance with FCL. csv: file of the
+/// simulator.
 Played play(const std::string& scenario, const std::string& left, const std::string& right, const std::string& csv) {
   const auto controller = [](const std::string& config) {
     return std::vector<std::string>{"build/controller", "--config",  config,
@@ -54,7 +55,7 @@ std::vector<double> sorted_column(const std::string& file, const std::string& na
   return values;
 }
 
-/// The scenario expects no contact, the limits of the joints, and both tools at their targets in the end.
+/// The scenario expects no contact, joints within their limits, and both tools at their targets at the end.
 void two_controllers_share_a_workspace_without_contact(void**) {
   const std::string folder = test::scratch_folder();
   const Played played = play(kScenario, config_of("left"), config_of("right"), folder + "/run.csv");
@@ -70,32 +71,33 @@ void two_controllers_share_a_workspace_without_contact(void**) {
   }
 }
 
-std::string deaf(const std::string& arm, const std::string& other) {
+std::string without_neighbour(const std::string& arm, const std::string& other) {
   return test::scratch_file(arm + ".yaml",
                             replaced(test::text_of(config_of(arm)), "listen: [" + other + "]", "listen: []"));
 }
 
-/// The scene is worth the name.
-void two_that_do_not_listen_collide(void**) {
-  const std::string left = deaf("left", "RIGHT_LINKS"), right = deaf("right", "LEFT_LINKS");
+/// Proves that the arms of this scenario must avoid each other.
+void arms_that_do_not_receive_each_others_links_collide(void**) {
+  const std::string left = without_neighbour("left", "RIGHT_LINKS"), right = without_neighbour("right", "LEFT_LINKS");
   const std::string text = replaced(test::text_of(kScenario), "duration_s: 20", "duration_s: 5");
-  const Played played = play(test::scratch_file("deaf.yaml", text), left, right, test::scratch_folder() + "/deaf.csv");
+  const Played played =
+      play(test::scratch_file("separate.yaml", text), left, right, test::scratch_folder() + "/separate.csv");
   check(played.code == 1 && played.text.find("contact                   YES") != std::string::npos, "%s",
         played.text.c_str());
 }
 
-/// In real time; the neighbour is a ball far away.
-void a_neighbour_that_is_not_heard_stops_the_arm(void**) {
+/// In real time; the neighbour is one sphere far away.
+void a_neighbour_that_sends_no_links_stops_the_arm(void**) {
   const std::string config = test::scratch_file(
       "arm.yaml", replaced(test::text_of("firmware/config/lwa3.yaml"), "listen: []", "listen: [LINKS_R]"));
   Process controller({"build/controller", "--config", config, "--lcm-url", private_lcm_url()});
   test::LiveArm arm(test::lwa3().limits, test::home_rad());
   arm.target_m = Vector3(0.1, 0.45, 0.7);
   int64_t links_utime = 0;
-  const auto run = [&](double duration_s, bool neighbour_speaks) {
+  const auto run = [&](double duration_s, bool neighbour_sends) {
     for (double t_s = 0.0; t_s < duration_s; t_s += 0.02) {
       const obstacle_t ball = test::sphere(0, Vector3(3, 3, 3), 0.1, Vector3::Zero());
-      if (neighbour_speaks) arm.peer.send("LINKS_R", test::obstacles_message(++links_utime, {ball}));
+      if (neighbour_sends) arm.peer.send("LINKS_R", test::obstacles_message(++links_utime, {ball}));
       arm.run(0.02);
     }
     return arm.status().mode;
@@ -115,8 +117,8 @@ void a_neighbour_that_is_not_heard_stops_the_arm(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(two_controllers_share_a_workspace_without_contact, test::kill_processes),
-      cmocka_unit_test_teardown(a_neighbour_that_is_not_heard_stops_the_arm, test::kill_processes),
-      cmocka_unit_test_teardown(two_that_do_not_listen_collide, test::kill_processes),
+      cmocka_unit_test_teardown(a_neighbour_that_sends_no_links_stops_the_arm, test::kill_processes),
+      cmocka_unit_test_teardown(arms_that_do_not_receive_each_others_links_collide, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

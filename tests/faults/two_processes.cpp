@@ -14,7 +14,7 @@ using test::text_of;
 
 namespace {
 
-/// A CSV file by column; what is not a number counts as 0.
+/// A CSV file by column. A field that is not a number counts as 0.
 using Columns = std::map<std::string, std::vector<double>>;
 
 Columns columns_of(const std::string& csv) {
@@ -32,8 +32,8 @@ Columns columns_of(const std::string& csv) {
   return columns;
 }
 
-/// Plays a scenario with both programs and returns the simulator's record. held: whether its expectations are to hold.
-std::string play(const std::string& scenario, const std::string& law, bool lockstep, bool held = true) {
+/// Plays a scenario with both programs and returns the simulator's CSV. met: whether its expectations must be met.
+std::string play(const std::string& scenario, const std::string& law, bool lockstep, bool met = true) {
   const std::string csv = test::scratch_folder() + "/" + scenario + ".csv";
   std::vector<std::string> controller = {
       "build/controller", "--config", "firmware/config/lwa3.yaml", "--law", law, "--lcm-url", private_lcm_url()};
@@ -45,8 +45,8 @@ std::string play(const std::string& scenario, const std::string& law, bool locks
     sim.emplace_back("--lockstep");
   }
   Process the_controller(controller), the_sim(sim);
-  const int code = the_sim.wait(300.0);  // a build with sanitizers takes its time
-  check(code == (held ? 0 : 1), "%s, law %s: the simulator's code is %d: %s", scenario.c_str(), law.c_str(), code,
+  const int code = the_sim.wait(300.0);  // a build with sanitizers is slow
+  check(code == (met ? 0 : 1), "%s, law %s: the simulator's code is %d: %s", scenario.c_str(), law.c_str(), code,
         the_sim.output().c_str());
   the_controller.signal(SIGTERM);
   check(the_controller.wait(5.0) == 0, "%s, law %s: %s", scenario.c_str(), law.c_str(),
@@ -54,7 +54,7 @@ std::string play(const std::string& scenario, const std::string& law, bool locks
   return text_of(csv);
 }
 
-/// Both programs and the wire between them, against one NumPy program that knows neither.
+/// Both programs and their messages against one independent NumPy program.
 void the_papers_simulations_agree_with_numpy_from_end_to_end(void**) {
   for (const char* scenario : {"paper-a", "paper-b", "paper-c"}) {
     Process numpy({"build/venv/bin/python", "tests/support/paper_law.py", "simulate", scenario});
@@ -76,7 +76,7 @@ void the_papers_simulations_agree_with_numpy_from_end_to_end(void**) {
   }
 }
 
-void two_lockstep_plays_are_equal(void**) {
+void two_lockstep_runs_are_equal(void**) {
   Columns one = columns_of(play("paper-c", "sidestep", true)), two = columns_of(play("paper-c", "sidestep", true));
   one.erase("cycle_time_s");
   two.erase("cycle_time_s");
@@ -84,7 +84,7 @@ void two_lockstep_plays_are_equal(void**) {
   assert_true(one.at("t_s").size() > 200);
 }
 
-void a_play_in_real_time_ends_like_one_in_lockstep(void**) {
+void a_run_in_real_time_ends_like_one_in_lockstep(void**) {
   const Columns live = columns_of(play("paper-c", "sidestep", false)),
                 lockstep = columns_of(play("paper-c", "sidestep", true));
   assert_true(live.at("t_s").size() > 200);
@@ -92,7 +92,7 @@ void a_play_in_real_time_ends_like_one_in_lockstep(void**) {
   check_near(live.at("target_distance_m").back(), lockstep.at("target_distance_m").back(), 0.03);
 }
 
-/// Both as its figures show them: who only reacts gets stuck or hits.
+/// In these scenarios a law that only reacts gets stuck or hits an obstacle.
 void the_sidestep_law_arrives_where_the_papers_law_does_not(void**) {
   for (const char* scenario : {"parked-obstacle", "closing-gap", "pillar", "two-people", "moving-shelf"}) {
     play(scenario, "paper", true, false);
@@ -106,8 +106,8 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test_teardown(the_papers_simulations_agree_with_numpy_from_end_to_end, test::kill_processes),
       cmocka_unit_test_teardown(the_sidestep_law_arrives_where_the_papers_law_does_not, test::kill_processes),
-      cmocka_unit_test_teardown(two_lockstep_plays_are_equal, test::kill_processes),
-      cmocka_unit_test_teardown(a_play_in_real_time_ends_like_one_in_lockstep, test::kill_processes),
+      cmocka_unit_test_teardown(two_lockstep_runs_are_equal, test::kill_processes),
+      cmocka_unit_test_teardown(a_run_in_real_time_ends_like_one_in_lockstep, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -10,7 +10,7 @@ using test::Random;
 
 namespace {
 
-/// Obstacles all around the arm, some of them in it, some long ones.
+/// Places random spheres and capsules around and inside the arm.
 void surround(ClosedLoop& loop, int count, unsigned seed) {
   Random random(seed);
   loop.obstacles->count = 0;
@@ -21,7 +21,7 @@ void surround(ClosedLoop& loop, int count, unsigned seed) {
   }
 }
 
-/// Runs cycles and counts what step() alone asks of the heap.
+/// Runs cycles and returns the number of heap allocations in step() alone.
 int64_t allocations(ClosedLoop& loop, int cycles, int (&modes)[5]) {
   int64_t sum = 0;
   for (int i = 0; i < cycles; ++i) {
@@ -35,7 +35,7 @@ int64_t allocations(ClosedLoop& loop, int cycles, int (&modes)[5]) {
   return sum;
 }
 
-void the_counter_counts(void**) {
+void the_counter_counts_allocations_by_new_and_by_eigen(void**) {
   const int64_t start = test::allocation_count();
   int* volatile one = new int(1);
   const int64_t after_new = test::allocation_count();
@@ -47,7 +47,7 @@ void the_counter_counts(void**) {
   check(after_eigen - after_new == 1 && matrix.sum() > 0, "%ld", after_eigen - after_new);
 }
 
-void no_cycle_allocates_whatever_the_mode_law_and_number_of_obstacles(void**) {
+void no_cycle_allocates_in_any_mode_law_or_number_of_obstacles(void**) {
   for (const char* law : {"paper", "sidestep"}) {
     const Model model = test::lwa3_model(law);
     for (const int obstacles : {0, 1, 64, kMaxObstacles}) {
@@ -84,8 +84,8 @@ void no_cycle_allocates_whatever_the_mode_law_and_number_of_obstacles(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(the_counter_counts),
-      cmocka_unit_test(no_cycle_allocates_whatever_the_mode_law_and_number_of_obstacles),
+      cmocka_unit_test(the_counter_counts_allocations_by_new_and_by_eigen),
+      cmocka_unit_test(no_cycle_allocates_in_any_mode_law_or_number_of_obstacles),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

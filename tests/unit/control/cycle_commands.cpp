@@ -20,8 +20,8 @@ void check_stream(const ClosedLoop& loop, const char* law, unsigned seed) {
   check(loop.commands.complaint().empty(), "%s, seed %u: %s", law, seed, loop.commands.complaint().c_str());
 }
 
-/// Something that happens now and then in a life; most of the time nothing does.
-void happen(ClosedLoop& loop, Random& random) {
+/// Changes the inputs at random; most cycles stay unchanged.
+void disturb(ClosedLoop& loop, Random& random) {
   Target& target = loop.target;
   if (random.chance(0.02))
     target.position_m = random.inside(-1, 1) + Vector3(0, 0, 0.6);  // teleports, often out of reach
@@ -41,8 +41,8 @@ void happen(ClosedLoop& loop, Random& random) {
   }
 }
 
-/// All that can go wrong but a contradictory arm: every command is one that an arm can follow.
-void whatever_happens_every_command_can_be_followed(void**) {
+/// Random disturbances of all inputs except inconsistent arm states.
+void the_arm_can_follow_every_command_under_random_disturbances(void**) {
   for (const char* law : kLaws) {
     const Model model = lwa3_model(law);
     for (unsigned seed = 1; seed <= 12; ++seed) {
@@ -50,7 +50,7 @@ void whatever_happens_every_command_can_be_followed(void**) {
       ClosedLoop loop(model, random.poses(model.arm, 0.9));
       int64_t modes[5] = {};
       for (int cycle = 0; cycle < 1500; ++cycle) {
-        if (cycle > 60) happen(loop, random);
+        if (cycle > 60) disturb(loop, random);
         loop.cycle();
         ++modes[static_cast<int>(loop.mode())];
         check(loop.mode() != Mode::kFault || loop.last.report.fault == Fault::kArmStateLost,
@@ -63,7 +63,7 @@ void whatever_happens_every_command_can_be_followed(void**) {
   }
 }
 
-/// One state that jumps away and back, of the kind that a bit error makes, must not throw the arm after it.
+/// One arm state jumps away and back, as after a bit error.
 void one_wrong_arm_state_does_not_make_the_commands_jump(void**) {
   for (const char* law : kLaws) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
@@ -82,14 +82,14 @@ void one_wrong_arm_state_does_not_make_the_commands_jump(void**) {
   }
 }
 
-void an_arm_that_is_moving_at_the_start_is_taken_over_without_a_jump(void**) {
+void an_arm_that_moves_at_the_start_is_stopped_without_a_jump(void**) {
   for (const char* law : kLaws) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
       Random random(seed);
       ClosedLoop loop(lwa3_model(law), home_rad());
       const JointVector qd_radps = random.joints(7, -0.3, 0.3);
       for (int cycle = 0; cycle < 100; ++cycle) {
-        if (loop.mode() == Mode::kWait) {  // somebody else moves it
+        if (loop.mode() == Mode::kWait) {  // the arm is moved from outside
           loop.arm.velocity_radps = qd_radps;
           if (cycle > 0) loop.arm.position_rad += qd_radps * loop.model.settings.period_s();
         }
@@ -102,7 +102,7 @@ void an_arm_that_is_moving_at_the_start_is_taken_over_without_a_jump(void**) {
   }
 }
 
-/// A measured velocity is only a measurement. However wrong it is, no command is beyond the limits.
+/// No error of the measured velocity leads to a command beyond the limits.
 void a_measured_velocity_beyond_the_limits_is_not_commanded(void**) {
   for (const char* law : kLaws) {
     for (const double wrong_radps : {2.05, -3.0, 50.0, 900.0}) {
@@ -121,7 +121,7 @@ void a_measured_velocity_beyond_the_limits_is_not_commanded(void**) {
   }
 }
 
-void an_arm_outside_its_limits_is_led_back_inside(void**) {
+void an_arm_outside_its_limits_returns_inside(void**) {
   for (const char* law : kLaws) {
     JointVector q_rad = home_rad();
     q_rad[1] = 2.1;
@@ -134,8 +134,8 @@ void an_arm_outside_its_limits_is_led_back_inside(void**) {
   }
 }
 
-/// An arm that is held fast: the command waits for it, and within the velocity limit, instead of running away.
-void commands_do_not_run_away_from_an_arm_that_is_held_fast(void**) {
+/// The command stays near a blocked arm and within the velocity limit.
+void commands_stay_near_a_blocked_arm(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop(lwa3_model(law), home_rad());
     loop.target.position_m = Vector3(0.3, 0.4, 0.5);
@@ -155,14 +155,14 @@ void commands_do_not_run_away_from_an_arm_that_is_held_fast(void**) {
       last_rad = command_rad;
     }
     assert_true(loop.mode() == Mode::kTrack);
-    check(farthest_rad > 0.05, "%s: %g rad, nothing was tried", law, farthest_rad);
+    check(farthest_rad > 0.05, "%s: the command moved by only %g rad", law, farthest_rad);
     check(farthest_rad < 1.5 * loop.model.settings.following_error_rad, "%s: %g rad away", law, farthest_rad);
     check(fastest_rad <= 2.0 * 0.01 + 1e-9, "%s: %g rad in one cycle", law, fastest_rad);
   }
 }
 
-/// As by a hand, at rest and out of reach of the following error: the command goes along, no faster.
-void commands_follow_an_arm_that_is_pushed_without_a_hop(void**) {
+/// The arm holds and is pushed slowly, beyond half the following error. The command follows no faster than the arm.
+void commands_follow_a_pushed_arm_without_a_jump(void**) {
   const double push_rad = 0.05 * 0.01, rounding_rad = 1e-9;
   for (const char* law : kLaws) {
     ClosedLoop loop(lwa3_model(law), home_rad());
@@ -185,9 +185,9 @@ void commands_follow_an_arm_that_is_pushed_without_a_hop(void**) {
   }
 }
 
-/// As by a hand that moves fast, or while the arm brakes for want of obstacles: the command comes after it, but never
-/// faster than a joint could.
-void commands_come_after_an_arm_that_was_moved_as_a_joint_could(void**) {
+/// The arm is pushed fast, also while it brakes because of old obstacles. The command catches up, but never faster than
+/// a joint could move.
+void commands_catch_up_with_a_pushed_arm_within_the_joint_limits(void**) {
   for (const char* law : kLaws) {
     for (const bool while_braking : {false, true}) {
       for (const double push_radps : {0.4, 1.0, 1.9}) {
@@ -213,7 +213,7 @@ void commands_come_after_an_arm_that_was_moved_as_a_joint_could(void**) {
   }
 }
 
-/// Of what an arm says of its velocity and what its positions say, the lesser counts.
+/// The smaller of the reported and the differentiated velocity counts.
 void a_measured_velocity_that_the_positions_contradict_is_not_commanded(void**) {
   for (const char* law : kLaws) {
     for (const double wrong_radps : {0.5, -1.5, 1000.0}) {
@@ -222,7 +222,7 @@ void a_measured_velocity_that_the_positions_contradict_is_not_commanded(void**) 
         if (!loop.last.commanding) loop.arm.velocity_radps.setConstant(wrong_radps);
         const Inputs inputs = loop.receive();
         const Result result = step(loop.model, loop.state, inputs, loop.now_s());
-        if (result.command.velocity_radps.size() > 0)  // in lockstep that is said while waiting, too
+        if (result.command.velocity_radps.size() > 0)  // lockstep publishes a command while waiting, too
           check_near(result.command.velocity_radps, JointVector::Zero(7).eval(), 0);
         loop.follow(result);
       }
@@ -231,12 +231,12 @@ void a_measured_velocity_that_the_positions_contradict_is_not_commanded(void**) 
   }
 }
 
-std::vector<double> life(const Model& model, unsigned seed) {
+std::vector<double> random_run(const Model& model, unsigned seed) {
   std::vector<double> all;
   Random random(seed);
   ClosedLoop loop(model, home_rad());
   for (int cycle = 0; cycle < 1000; ++cycle) {
-    if (cycle > 60) happen(loop, random);
+    if (cycle > 60) disturb(loop, random);
     loop.cycle();
     const Command& command = loop.last.command;
     all.insert(all.end(), command.position_rad.data(), command.position_rad.data() + command.position_rad.size());
@@ -250,7 +250,7 @@ std::vector<double> life(const Model& model, unsigned seed) {
 void the_same_inputs_give_the_same_commands_bit_for_bit(void**) {
   for (const char* law : kLaws) {
     const Model model = lwa3_model(law), again = lwa3_model(law);
-    const std::vector<double> one = life(model, 5), two = life(again, 5), other = life(model, 6);
+    const std::vector<double> one = random_run(model, 5), two = random_run(again, 5), other = random_run(model, 6);
     assert_int_equal(one.size(), two.size());
     assert_memory_equal(one.data(), two.data(), one.size() * sizeof(double));
     assert_true(one.size() != other.size() || std::memcmp(one.data(), other.data(), one.size() * sizeof(double)) != 0);
@@ -261,14 +261,14 @@ void the_same_inputs_give_the_same_commands_bit_for_bit(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(whatever_happens_every_command_can_be_followed),
+      cmocka_unit_test(the_arm_can_follow_every_command_under_random_disturbances),
       cmocka_unit_test(one_wrong_arm_state_does_not_make_the_commands_jump),
-      cmocka_unit_test(an_arm_that_is_moving_at_the_start_is_taken_over_without_a_jump),
+      cmocka_unit_test(an_arm_that_moves_at_the_start_is_stopped_without_a_jump),
       cmocka_unit_test(a_measured_velocity_beyond_the_limits_is_not_commanded),
-      cmocka_unit_test(an_arm_outside_its_limits_is_led_back_inside),
-      cmocka_unit_test(commands_do_not_run_away_from_an_arm_that_is_held_fast),
-      cmocka_unit_test(commands_follow_an_arm_that_is_pushed_without_a_hop),
-      cmocka_unit_test(commands_come_after_an_arm_that_was_moved_as_a_joint_could),
+      cmocka_unit_test(an_arm_outside_its_limits_returns_inside),
+      cmocka_unit_test(commands_stay_near_a_blocked_arm),
+      cmocka_unit_test(commands_follow_a_pushed_arm_without_a_jump),
+      cmocka_unit_test(commands_catch_up_with_a_pushed_arm_within_the_joint_limits),
       cmocka_unit_test(a_measured_velocity_that_the_positions_contradict_is_not_commanded),
       cmocka_unit_test(the_same_inputs_give_the_same_commands_bit_for_bit),
   };

@@ -29,7 +29,7 @@ void waits_for_half_a_second_of_arm_state(void**) {
   assert_true(loop.mode() == Mode::kTrack || loop.mode() == Mode::kHold);
 }
 
-void a_jump_while_waiting_starts_the_wait_anew(void**) {
+void a_jump_while_waiting_restarts_the_wait(void**) {
   ClosedLoop loop = at_home("paper");
   loop.run(0.4);
   loop.arm.position_rad[2] += 0.2;
@@ -39,7 +39,7 @@ void a_jump_while_waiting_starts_the_wait_anew(void**) {
   assert_true(loop.mode() == Mode::kHold);
 }
 
-void waits_for_the_first_obstacles_unless_told_otherwise(void**) {
+void waits_for_the_first_obstacles_unless_configured_otherwise(void**) {
   ClosedLoop loop = at_home("paper");
   loop.target_speaks = true;
   loop.obstacles_speak = false;
@@ -51,12 +51,12 @@ void waits_for_the_first_obstacles_unless_told_otherwise(void**) {
   assert_true(loop.mode() == Mode::kTrack);
   check_near(loop.last.report.clearance_m, HUGE_VAL, 0);
 
-  ClosedLoop trusting = at_home("paper");
-  trusting.model.settings.wait_for_obstacles = false;
-  trusting.target_speaks = true;
-  trusting.obstacles_speak = false;
-  trusting.run(0.6);
-  assert_true(trusting.mode() == Mode::kTrack);
+  ClosedLoop not_waiting = at_home("paper");
+  not_waiting.model.settings.wait_for_obstacles = false;
+  not_waiting.target_speaks = true;
+  not_waiting.obstacles_speak = false;
+  not_waiting.run(0.6);
+  assert_true(not_waiting.mode() == Mode::kTrack);
 }
 
 void holds_without_a_target_and_tracks_with_one(void**) {
@@ -76,7 +76,7 @@ void holds_without_a_target_and_tracks_with_one(void**) {
   }
 }
 
-void asked_to_stop_it_brakes_to_rest_for_good(void**) {
+void a_request_to_stop_brakes_to_rest(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
     loop.stop = true;
@@ -93,7 +93,7 @@ void asked_to_stop_it_brakes_to_rest_for_good(void**) {
   }
 }
 
-void one_late_cycle_is_noted_and_three_in_a_row_brake(void**) {
+void one_late_cycle_is_reported_and_three_in_a_row_brake(void**) {
   ClosedLoop loop = tracking("paper");
   loop.skipped = 2;
   loop.cycle();
@@ -112,7 +112,7 @@ void one_late_cycle_is_noted_and_three_in_a_row_brake(void**) {
   assert_true(loop.mode() == Mode::kTrack);
 }
 
-void a_wish_that_is_not_finite_is_a_fault_and_brakes(void**) {
+void a_nominal_velocity_that_is_not_finite_is_a_fault_and_brakes(void**) {
   for (const char* law : kLaws) {
     for (const double bad : {std::nan(""), HUGE_VAL, 1e308}) {
       ClosedLoop loop = tracking(law);
@@ -132,8 +132,8 @@ void a_wish_that_is_not_finite_is_a_fault_and_brakes(void**) {
   }
 }
 
-/// tool_velocity: planned starts anew from the measured velocity whenever the arm was not tracking.
-void planned_velocity_is_forgotten_while_holding(void**) {
+/// With `tool_velocity: planned` tracking always starts from the measured velocity.
+void planned_velocity_is_discarded_while_holding(void**) {
   ClosedLoop loop = tracking("paper");
   loop.model.settings.paper.tool_velocity = ToolVelocity::kPlanned;
   loop.run(0.3);
@@ -155,13 +155,13 @@ void planned_velocity_is_forgotten_while_holding(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(waits_for_half_a_second_of_arm_state),
-      cmocka_unit_test(a_jump_while_waiting_starts_the_wait_anew),
-      cmocka_unit_test(waits_for_the_first_obstacles_unless_told_otherwise),
+      cmocka_unit_test(a_jump_while_waiting_restarts_the_wait),
+      cmocka_unit_test(waits_for_the_first_obstacles_unless_configured_otherwise),
       cmocka_unit_test(holds_without_a_target_and_tracks_with_one),
-      cmocka_unit_test(asked_to_stop_it_brakes_to_rest_for_good),
-      cmocka_unit_test(one_late_cycle_is_noted_and_three_in_a_row_brake),
-      cmocka_unit_test(a_wish_that_is_not_finite_is_a_fault_and_brakes),
-      cmocka_unit_test(planned_velocity_is_forgotten_while_holding),
+      cmocka_unit_test(a_request_to_stop_brakes_to_rest),
+      cmocka_unit_test(one_late_cycle_is_reported_and_three_in_a_row_brake),
+      cmocka_unit_test(a_nominal_velocity_that_is_not_finite_is_a_fault_and_brakes),
+      cmocka_unit_test(planned_velocity_is_discarded_while_holding),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

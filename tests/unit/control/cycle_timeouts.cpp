@@ -15,7 +15,7 @@ namespace {
 
 const char* const kLaws[] = {"paper", "sidestep"};
 
-void an_old_target_is_held_and_a_new_one_tracked_again(void**) {
+void an_old_target_leads_to_hold_and_a_new_one_to_track(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
     loop.target_speaks = false;
@@ -55,8 +55,8 @@ void old_obstacles_brake_and_grow(void**) {
   }
 }
 
-/// After every wait and every fault.
-void on_old_obstacles_nothing_starts(void**) {
+/// Neither after a wait nor after a fault.
+void the_arm_does_not_start_on_old_obstacles(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = test::at_home(law);
     loop.add_sphere(Vector3(-0.3, 0.1, 0.8), Vector3(0, 0, 0));
@@ -85,8 +85,9 @@ void on_old_obstacles_nothing_starts(void**) {
   }
 }
 
-/// As in a lockstep world that starts over: obstacles heard in a time to come are at least where they were.
-void obstacles_of_a_time_to_come_are_not_farther_away(void**) {
+/// A restarted lockstep simulator sets the clock back, so that the last obstacles were received in the future. Such
+/// obstacles count at least at their reported positions.
+void obstacles_received_in_the_future_are_not_farther_away(void**) {
   const Model model = test::lwa3_model("sidestep");
   ObstacleSet set;
   set.count = 1;
@@ -122,13 +123,13 @@ void a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault(void**) {
   }
 }
 
-void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
+void an_arm_that_jumps_is_a_fault_and_continues_from_its_new_position(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
     loop.arm.position_rad[0] += 0.5;
     loop.cycle();
     assert_true(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateInconsistent);
-    assert_false(loop.last.commanding);  // not one more that leads elsewhere
+    assert_false(loop.last.commanding);  // no further command
     check_near(loop.last.command.position_rad, loop.arm.position_rad, 0.02);
     loop.run(0.48);
     assert_true(loop.mode() == Mode::kFault);
@@ -140,9 +141,8 @@ void an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is(void**) {
   }
 }
 
-/// No cycles run meanwhile, as in lockstep, where the arm's states are the clock.
-/// However much time the arm says has passed, no more has than was waited for it.
-void an_arm_whose_clock_runs_ahead_may_not_jump_either(void**) {
+/// The elapsed time by the arm's clock counts only as far as the controller's clock confirms it.
+void an_arm_whose_clock_runs_ahead_may_not_jump(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
     loop.arm_clock_offset_us += 5'000'000;
@@ -151,18 +151,19 @@ void an_arm_whose_clock_runs_ahead_may_not_jump_either(void**) {
     check(loop.mode() == Mode::kFault && loop.says("jumped"), "%s: %s", law, loop.last.report.message);
 
     test::Random random(1);
-    ClosedLoop wild = test::at_home(law);
-    wild.target_speaks = true;
+    ClosedLoop jumping = test::at_home(law);
+    jumping.target_speaks = true;
     for (int cycle = 0; cycle < 300; ++cycle) {
-      wild.arm.position_rad = random.poses(wild.model.arm, 0.9);
-      wild.arm_clock_offset_us += 3'000'000;
-      wild.cycle();
-      check(wild.mode() == Mode::kWait && !wild.last.commanding, "%s: %s", law, wild.last.report.message);
+      jumping.arm.position_rad = random.poses(jumping.model.arm, 0.9);
+      jumping.arm_clock_offset_us += 3'000'000;
+      jumping.cycle();
+      check(jumping.mode() == Mode::kWait && !jumping.last.commanding, "%s: %s", law, jumping.last.report.message);
     }
   }
 }
 
-void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
+/// In lockstep the arm's states are the clock, so that no cycle runs during a silence.
+void a_silence_of_the_arm_counts_where_its_states_are_the_clock(void**) {
   for (const char* law : kLaws) {
     const struct {
       double silence_s, moved_rad;
@@ -187,11 +188,12 @@ void a_silence_of_the_clock_itself_is_judged_as_any_other(void**) {
   }
 }
 
-/// The arm has stopped by itself in the meantime: commands start anew from there, not before it has been heard since.
-void after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is(void**) {
+/// The arm has stopped by itself during the pause. Commands start from its position, once a state has been received
+/// after it stopped.
+void after_a_pause_of_the_controller_commands_start_from_the_arms_position(void**) {
   const double pause_s = 0.08;
   const struct {
-    double heard_s;  // after the last cycle
+    double arm_received_s;  // after the last cycle
     Mode mode;
     bool commanding;
   } cases[] = {{0.0, Mode::kBrake, false}, {0.055, Mode::kBrake, false}, {0.07, Mode::kBrake, true}};
@@ -202,14 +204,14 @@ void after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is(void**
       Inputs inputs = loop.receive();
       ArmState arm = *inputs.arm.message;
       arm.velocity_radps.setZero();
-      arm.utime = loop.state.arm_utime + std::llround(each.heard_s * 1e6);
+      arm.utime = loop.state.arm_utime + std::llround(each.arm_received_s * 1e6);
       const double last_s = loop.state.cycle_s, now_s = last_s + pause_s;
-      if (each.heard_s > 0.0) inputs.arm = {&arm, last_s + each.heard_s, loop.state.arm_count + 5};
+      if (each.arm_received_s > 0.0) inputs.arm = {&arm, last_s + each.arm_received_s, loop.state.arm_count + 5};
       inputs.target.received_s = inputs.obstacles.received_s = now_s;
       inputs.skipped_cycles = 7;
       const Result result = step(loop.model, loop.state, inputs, now_s);
-      check(result.report.mode == each.mode, "%s, %g s: %s", law, each.heard_s, result.report.message);
-      check(result.commanding == each.commanding, "%s, %g s", law, each.heard_s);
+      check(result.report.mode == each.mode, "%s, %g s: %s", law, each.arm_received_s, result.report.message);
+      check(result.commanding == each.commanding, "%s, %g s", law, each.arm_received_s);
       if (!each.commanding) continue;
       check_near(result.command.velocity_radps.norm(), 0.0, 0);
       check_near(result.command.position_rad, arm.position_rad, 1e-12);
@@ -228,7 +230,7 @@ void a_foreign_command_counts_for_half_a_second(void**) {
   }
 }
 
-void an_arm_whose_clock_stands_still_or_goes_back_is_a_fault(void**) {
+void an_arm_whose_clock_stops_or_goes_back_is_a_fault(void**) {
   for (const int64_t offset_us : {-10000, -20000, -50000}) {
     ClosedLoop loop = tracking("paper");
     loop.arm_clock_offset_us = offset_us;
@@ -240,8 +242,8 @@ void an_arm_whose_clock_stands_still_or_goes_back_is_a_fault(void**) {
   }
 }
 
-/// What moves is reported now and then only; in between it is moved on by its velocities.
-void target_and_obstacles_are_moved_forward_to_the_present(void**) {
+/// A report every tenth cycle gives the same commands as a report every cycle.
+void target_and_obstacles_are_extrapolated_to_the_current_cycle(void**) {
   for (const char* law : kLaws) {
     const auto play = [&](int every) {
       ClosedLoop loop = tracking(law);
@@ -267,18 +269,18 @@ void target_and_obstacles_are_moved_forward_to_the_present(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(an_old_target_is_held_and_a_new_one_tracked_again),
+      cmocka_unit_test(an_old_target_leads_to_hold_and_a_new_one_to_track),
       cmocka_unit_test(old_obstacles_brake_and_grow),
-      cmocka_unit_test(on_old_obstacles_nothing_starts),
-      cmocka_unit_test(obstacles_of_a_time_to_come_are_not_farther_away),
+      cmocka_unit_test(the_arm_does_not_start_on_old_obstacles),
+      cmocka_unit_test(obstacles_received_in_the_future_are_not_farther_away),
       cmocka_unit_test(a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault),
-      cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_goes_on_from_where_it_is),
-      cmocka_unit_test(an_arm_whose_clock_runs_ahead_may_not_jump_either),
-      cmocka_unit_test(a_silence_of_the_clock_itself_is_judged_as_any_other),
-      cmocka_unit_test(after_a_pause_of_the_controller_commands_go_on_from_where_the_arm_is),
+      cmocka_unit_test(an_arm_that_jumps_is_a_fault_and_continues_from_its_new_position),
+      cmocka_unit_test(an_arm_whose_clock_runs_ahead_may_not_jump),
+      cmocka_unit_test(a_silence_of_the_arm_counts_where_its_states_are_the_clock),
+      cmocka_unit_test(after_a_pause_of_the_controller_commands_start_from_the_arms_position),
       cmocka_unit_test(a_foreign_command_counts_for_half_a_second),
-      cmocka_unit_test(an_arm_whose_clock_stands_still_or_goes_back_is_a_fault),
-      cmocka_unit_test(target_and_obstacles_are_moved_forward_to_the_present),
+      cmocka_unit_test(an_arm_whose_clock_stops_or_goes_back_is_a_fault),
+      cmocka_unit_test(target_and_obstacles_are_extrapolated_to_the_current_cycle),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -14,7 +14,7 @@ using test::Random;
 
 namespace {
 
-/// CPU time of this thread: what other processes take does not count.
+/// CPU time of this thread, s; the time of other processes is not included.
 double cpu_s() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -28,15 +28,15 @@ struct Times {
 enum class Kind { kSpheres, kBoxes };
 
 void add(Kind kind, Random& random, ClosedLoop& loop) {
-  const Vector3 place_m = random.inside(-0.8, 0.8) + Vector3(0, 0, 0.6), velocity_mps = random.inside(-0.3, 0.3);
-  Obstacle& added = loop.add_sphere(place_m, velocity_mps);
+  const Vector3 centre_m = random.inside(-0.8, 0.8) + Vector3(0, 0, 0.6), velocity_mps = random.inside(-0.3, 0.3);
+  Obstacle& added = loop.add_sphere(centre_m, velocity_mps);
   if (kind == Kind::kSpheres) return;
-  added = box_obstacle(place_m, random.turn().toRotationMatrix(), random.inside(0.02, 0.2));
+  added = box_obstacle(centre_m, random.turn().toRotationMatrix(), random.inside(0.02, 0.2));
   added.velocity_mps = velocity_mps;
   added.angular_velocity_radps = random.inside(-1, 1);
 }
 
-/// A target that runs around and obstacles that bounce about in the arm's reach.
+/// Measures step() while the target moves on a curve and the obstacles move back and forth within the arm's reach.
 Times measure(const char* law, Kind kind, int obstacles, int cycles, bool with_orientation) {
   Random random(1);
   ClosedLoop loop(test::lwa3_model(law), test::home_rad());
@@ -49,9 +49,9 @@ Times measure(const char* law, Kind kind, int obstacles, int cycles, bool with_o
     loop.target.position_m = Vector3(0.4 * std::cos(0.7 * t), 0.4 * std::sin(0.7 * t), 0.7 + 0.2 * std::sin(t));
     for (int i = 0; i < obstacles; ++i) {
       Obstacle& obstacle = loop.obstacles->obstacles[static_cast<size_t>(i)];
-      const Vector3 from_middle = obstacle.capsule.centre() - Vector3(0, 0, 0.6);
+      const Vector3 from_centre_m = obstacle.capsule.centre() - Vector3(0, 0, 0.6);
       for (int axis = 0; axis < 3; ++axis)
-        if (from_middle[axis] * obstacle.velocity_mps[axis] > 0 && std::abs(from_middle[axis]) > 0.8)
+        if (from_centre_m[axis] * obstacle.velocity_mps[axis] > 0 && std::abs(from_centre_m[axis]) > 0.8)
           obstacle.velocity_mps[axis] *= -1;
     }
     const Inputs inputs = loop.receive();
@@ -70,9 +70,8 @@ Times measure(const char* law, Kind kind, int obstacles, int cycles, bool with_o
   return found;
 }
 
-/// The slowest cycles are those with several obstacles inside the arm, where the shield gives up one clearance after
-/// the other.
-void a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period(void**) {
+/// The slowest cycles have several obstacles inside the arm, so that the shield relaxes one clearance after the other.
+void a_cycle_among_50_moving_obstacles_takes_a_fraction_of_the_period(void**) {
   for (const auto& [law, slowest_s] : {std::pair{"paper", 2e-3}, {"sidestep", 4e-3}}) {
     for (const bool with_orientation : {false, true}) {
       const Times times = measure(law, Kind::kSpheres, 50, 3000, with_orientation);
@@ -82,12 +81,12 @@ void a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period(void**) {
   }
 }
 
-void a_cycle_among_50_boxes_that_turn_does_too(void**) {
+void a_cycle_among_50_turning_boxes_takes_a_fraction_of_the_period(void**) {
   const Times times = measure("sidestep", Kind::kBoxes, 50, 1000, false);
   check(times.median_s < 1e-3 && times.p99_s < 5e-3, "median %g s, p99 %g s", times.median_s, times.p99_s);
 }
 
-void even_as_many_obstacles_as_a_message_holds_fit_into_the_period(void**) {
+void the_median_cycle_among_the_largest_obstacle_set_fits_into_the_period(void**) {
   for (const char* law : {"paper", "sidestep"}) {
     for (const Kind kind : {Kind::kSpheres, Kind::kBoxes}) {
       const Times times = measure(law, kind, kMaxObstacles, 200, false);
@@ -100,9 +99,9 @@ void even_as_many_obstacles_as_a_message_holds_fit_into_the_period(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_cycle_among_50_moving_obstacles_needs_a_fraction_of_its_period),
-      cmocka_unit_test(a_cycle_among_50_boxes_that_turn_does_too),
-      cmocka_unit_test(even_as_many_obstacles_as_a_message_holds_fit_into_the_period),
+      cmocka_unit_test(a_cycle_among_50_moving_obstacles_takes_a_fraction_of_the_period),
+      cmocka_unit_test(a_cycle_among_50_turning_boxes_takes_a_fraction_of_the_period),
+      cmocka_unit_test(the_median_cycle_among_the_largest_obstacle_set_fits_into_the_period),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

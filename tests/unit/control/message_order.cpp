@@ -32,14 +32,14 @@ Obstacle good_obstacle() {
   return obstacle;
 }
 
-void good_values_are_plausible(void**) {
+void possible_values_are_plausible(void**) {
   assert_true(plausible(good_arm(), 7));
   assert_true(plausible(good_target()));
   assert_true(plausible(good_obstacle()));
   assert_true(plausible(Obstacle()));  // a point at rest
 }
 
-void no_number_of_an_arm_state_may_be_impossible(void**) {
+void an_arm_state_with_an_impossible_number_is_rejected(void**) {
   for (const double bad : {kNan, kInfinity, -kInfinity, 1e4, -1e300}) {
     for (int i = 0; i < 7; ++i) {
       ArmState position = good_arm(), velocity = good_arm();
@@ -50,14 +50,14 @@ void no_number_of_an_arm_state_may_be_impossible(void**) {
   }
 }
 
-void an_arm_state_has_the_right_number_of_joints(void**) {
+void an_arm_state_with_a_wrong_number_of_joints_is_rejected(void**) {
   for (int joints = 0; joints <= kMaxJoints; ++joints) assert_int_equal(plausible(good_arm(), joints), joints == 7);
   ArmState uneven = good_arm();
   uneven.velocity_radps = JointVector::Zero(6);
   assert_false(plausible(uneven, 7));
 }
 
-void no_number_of_a_target_may_be_impossible(void**) {
+void a_target_with_an_impossible_number_is_rejected(void**) {
   for (const double bad : {kNan, kInfinity, -kInfinity, 1e4, -1e300}) {
     for (int i = 0; i < 3; ++i) {
       Target position = good_target(), velocity = good_target(), turning = good_target();
@@ -66,7 +66,7 @@ void no_number_of_a_target_may_be_impossible(void**) {
       turning.angular_velocity_radps[i] = bad;
       check(!plausible(position) && !plausible(velocity) && !plausible(turning), "element %d: %g", i, bad);
       turning.tracks_orientation = false;
-      check(plausible(turning) == std::isfinite(bad), "not used, but a number: element %d, %g", i, bad);
+      check(plausible(turning) == std::isfinite(bad), "unused element %d: %g", i, bad);
     }
     for (int i = 0; i < 4; ++i) {
       Target target = good_target();
@@ -76,17 +76,17 @@ void no_number_of_a_target_may_be_impossible(void**) {
   }
 }
 
-void an_orientation_is_a_unit_quaternion(void**) {
+void an_orientation_that_is_no_unit_quaternion_is_rejected(void**) {
   for (const double length : {0.0, 0.5, 0.99, 0.9995, 1.0, 1.0005, 1.01, 2.0}) {
     Target target = good_target();
     target.orientation.coeffs() *= length;
     check(plausible(target) == (std::abs(length - 1.0) < 1e-3), "length %g", length);
     target.tracks_orientation = false;
-    check(plausible(target), "not used: length %g", length);
+    check(plausible(target), "unused quaternion of length %g", length);
   }
 }
 
-void no_number_of_an_obstacle_may_be_impossible(void**) {
+void an_obstacle_with_an_impossible_number_is_rejected(void**) {
   const std::vector<std::function<double&(Obstacle&)>> numbers = {
       [](Obstacle& o) -> double& { return o.capsule.start.y(); },
       [](Obstacle& o) -> double& { return o.capsule.end.z(); },
@@ -100,12 +100,12 @@ void no_number_of_an_obstacle_may_be_impossible(void**) {
       check(!plausible(obstacle), "number %zu: %g", i, bad);
     }
   }
-  Obstacle inside_out = good_obstacle();
-  inside_out.capsule.radius_m = -1e-9;
-  assert_false(plausible(inside_out));
+  Obstacle negative_radius = good_obstacle();
+  negative_radius.capsule.radius_m = -1e-9;
+  assert_false(plausible(negative_radius));
 }
 
-void a_message_is_fresh_until_its_limit_and_never_from_the_future(void**) {
+void a_message_is_fresh_from_its_receipt_to_its_age_limit(void**) {
   const Target target;
   const Latest<Target> latest{&target, 10.0, 1};
   assert_true(latest.fresh(10.0, 0.25));
@@ -121,25 +121,25 @@ void only_newer_messages_are_accepted(void**) {
   assert_true(order.accept(1000, 1.000, 0.1));
   assert_false(order.accept(1000, 1.001, 0.1));
   assert_false(order.accept(999, 1.002, 0.1));
-  assert_false(Order(order).accept(1000, 2.000, 0.1));  // its sender has frozen
+  assert_false(Order(order).accept(1000, 2.000, 0.1));  // a frozen sender repeats its last message
   assert_true(order.accept(1001, 1.003, 0.1));
   assert_true(order.accept(900000000, 1.004, 0.1));
 }
 
-void the_first_message_may_say_anything(void**) {
+void the_first_message_is_accepted_with_any_utime(void**) {
   for (const int64_t utime : {INT64_MIN, int64_t{-1}, int64_t{0}, INT64_MAX}) {
     Order order;
     check(order.accept(utime, 0.0, 0.1), "%ld", utime);
   }
 }
 
-void a_sender_that_starts_anew_is_accepted(void**) {
+void a_restarted_sender_is_accepted(void**) {
   Order far_back;
   assert_true(far_back.accept(5'000'000, 1.00, 0.1));
-  assert_false(far_back.accept(4'950'000, 1.01, 0.1));  // 50 ms back: late, not new
-  assert_false(far_back.accept(10, 1.02, 0.1));         // 5 s back: perhaps very late
+  assert_false(far_back.accept(4'950'000, 1.01, 0.1));  // 50 ms back: late, not restarted
+  assert_false(far_back.accept(10, 1.02, 0.1));         // 5 s back: restarted or very late
   assert_false(far_back.accept(20, 1.03, 0.1));
-  assert_true(far_back.accept(30, 1.04, 0.1));  // but not three in a row
+  assert_true(far_back.accept(30, 1.04, 0.1));  // three in a row: restarted
   assert_true(far_back.accept(40, 1.05, 0.1));
   assert_false(far_back.accept(35, 1.06, 0.1));
 
@@ -149,7 +149,7 @@ void a_sender_that_starts_anew_is_accepted(void**) {
   assert_true(silence.accept(4'990'000, 1.11, 0.1));
 }
 
-/// Nor do any number of them among newer ones.
+/// Any number of such messages between newer ones is dropped, too.
 void a_message_that_is_very_late_is_dropped(void**) {
   Order order;
   for (int i = 0; i < 20; ++i) {
@@ -170,8 +170,8 @@ void one_message_from_the_far_future_does_not_lock_its_sender_out(void**) {
   assert_true(order.accept(1'060'000, 1.06, 0.1));
 }
 
-/// Of a sender that stamps in nanoseconds, every message would be seconds after the one before.
-void what_a_sender_says_of_elapsed_time_is_believed_as_far_as_a_network_delays(void**) {
+/// Without this bound a sender that stamps in nanoseconds would appear to send seconds apart.
+void elapsed_time_follows_the_senders_clock_within_the_network_delay(void**) {
   Order order;
   assert_true(order.accept(1'000'000, 1.00, 0.1));
   check_near(order.elapsed_s(), 0.0, 0);
@@ -183,8 +183,8 @@ void what_a_sender_says_of_elapsed_time_is_believed_as_far_as_a_network_delays(v
   check_near(order.elapsed_s(), 0.11, 1e-12);
 }
 
-/// In lockstep the arm's utime is the clock as well.
-void where_the_messages_are_the_clock_old_ones_are_dropped_too(void**) {
+/// In lockstep the arm's utime is also the controller's clock.
+void old_messages_are_dropped_when_the_messages_are_the_clock(void**) {
   Order order;
   assert_true(order.accept(5'000'000, 5.00, 0.1));
   assert_true(order.accept(6'000'000, 6.00, 0.1));
@@ -198,20 +198,20 @@ void where_the_messages_are_the_clock_old_ones_are_dropped_too(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(good_values_are_plausible),
-      cmocka_unit_test(no_number_of_an_arm_state_may_be_impossible),
-      cmocka_unit_test(an_arm_state_has_the_right_number_of_joints),
-      cmocka_unit_test(no_number_of_a_target_may_be_impossible),
-      cmocka_unit_test(an_orientation_is_a_unit_quaternion),
-      cmocka_unit_test(no_number_of_an_obstacle_may_be_impossible),
-      cmocka_unit_test(a_message_is_fresh_until_its_limit_and_never_from_the_future),
+      cmocka_unit_test(possible_values_are_plausible),
+      cmocka_unit_test(an_arm_state_with_an_impossible_number_is_rejected),
+      cmocka_unit_test(an_arm_state_with_a_wrong_number_of_joints_is_rejected),
+      cmocka_unit_test(a_target_with_an_impossible_number_is_rejected),
+      cmocka_unit_test(an_orientation_that_is_no_unit_quaternion_is_rejected),
+      cmocka_unit_test(an_obstacle_with_an_impossible_number_is_rejected),
+      cmocka_unit_test(a_message_is_fresh_from_its_receipt_to_its_age_limit),
       cmocka_unit_test(only_newer_messages_are_accepted),
-      cmocka_unit_test(the_first_message_may_say_anything),
-      cmocka_unit_test(a_sender_that_starts_anew_is_accepted),
+      cmocka_unit_test(the_first_message_is_accepted_with_any_utime),
+      cmocka_unit_test(a_restarted_sender_is_accepted),
       cmocka_unit_test(a_message_that_is_very_late_is_dropped),
       cmocka_unit_test(one_message_from_the_far_future_does_not_lock_its_sender_out),
-      cmocka_unit_test(what_a_sender_says_of_elapsed_time_is_believed_as_far_as_a_network_delays),
-      cmocka_unit_test(where_the_messages_are_the_clock_old_ones_are_dropped_too),
+      cmocka_unit_test(elapsed_time_follows_the_senders_clock_within_the_network_delay),
+      cmocka_unit_test(old_messages_are_dropped_when_the_messages_are_the_clock),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

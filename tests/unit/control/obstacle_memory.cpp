@@ -18,26 +18,26 @@ Obstacle ball(int32_t id, const Vector3& position_m) {
   return {id, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
 }
 
-/// A sender of sets, one a period.
+/// A memory and a sender of one set per period.
 struct Scene {
-  std::unique_ptr<ObstacleMemory> places = std::make_unique<ObstacleMemory>(kSpeedBound_mps, kMemory_s);
+  std::unique_ptr<ObstacleMemory> memory = std::make_unique<ObstacleMemory>(kSpeedBound_mps, kMemory_s);
   std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
   double now_s = 0.0;
 
-  /// How many old places were added.
+  /// Returns the number of remembered obstacles that were added to the set.
   int send(const std::vector<Obstacle>& obstacles, double elapsed_s = kPeriod_s) {
     now_s += elapsed_s;
     set->count = static_cast<int>(obstacles.size());
     std::copy(obstacles.begin(), obstacles.end(), set->obstacles.begin());
-    places->complete(*set, elapsed_s, now_s);
+    memory->complete(*set, elapsed_s, now_s);
     return set->count - static_cast<int>(obstacles.size());
   }
   const Obstacle& last() const { return set->obstacles[static_cast<size_t>(set->count - 1)]; }
 };
 
-void what_jumps_counts_in_its_old_place_too_for_a_while(void**) {
+void an_obstacle_that_jumps_also_counts_at_its_last_position_for_a_while(void**) {
   Scene scene;
-  Obstacle wrong = ball(1, Vector3(0, 0, 1));  // of a sender whose velocities are no better than its places
+  Obstacle wrong = ball(1, Vector3(0, 0, 1));  // position and velocity are both wrong
   wrong.velocity_mps = Vector3(100, 0, 0);
   assert_int_equal(scene.send({wrong, ball(2, Vector3(1, 0, 1))}), 0);
   int periods = 0;
@@ -49,11 +49,11 @@ void what_jumps_counts_in_its_old_place_too_for_a_while(void**) {
   check_near((periods + 1) * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
 }
 
-void what_moves_as_fast_as_it_may_is_no_jump(void**) {
+void motion_within_the_speed_bound_is_no_jump(void**) {
   Scene scene;
   for (int i = 0; i < 200; ++i)
     assert_int_equal(scene.send({ball(1, Vector3(kSpeedBound_mps * kPeriod_s * i, 0, 0))}), 0);
-  for (int i = 0; i < 20; ++i)  // after a gap it may be farther
+  for (int i = 0; i < 20; ++i)  // after a gap an obstacle may be farther away
     assert_int_equal(scene.send({ball(1, Vector3(0, kSpeedBound_mps * 0.5 * i, 0))}, i == 0 ? 10.0 : 0.5), 0);
   Obstacle fast = ball(1, Vector3(0, 0, 0));
   fast.velocity_mps = Vector3(20, 0, 0);
@@ -64,19 +64,19 @@ void what_moves_as_fast_as_it_may_is_no_jump(void**) {
   }
 }
 
-/// A rod that turns by half is the same rod; one that suddenly stands across has jumped.
-void an_axis_jumps_when_an_end_of_it_does(void**) {
+/// A capsule that turns by half a turn is unchanged; one that turns by a quarter has jumped.
+void a_capsule_jumps_when_an_end_of_its_axis_does(void**) {
   const Vector3 a(-0.5, 0, 0), b(0.5, 0, 0), c(0, 0.5, 0), d(0, -0.5, 0);
-  const auto rod = [](const Vector3& start, const Vector3& end) {
+  const auto capsule = [](const Vector3& start, const Vector3& end) {
     return Obstacle{1, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
   };
   Scene scene;
-  scene.send({rod(a, b)});
-  assert_int_equal(scene.send({rod(b, a)}), 0);
-  assert_int_equal(scene.send({rod(c, d)}), 1);
+  scene.send({capsule(a, b)});
+  assert_int_equal(scene.send({capsule(b, a)}), 0);
+  assert_int_equal(scene.send({capsule(c, d)}), 1);
 }
 
-/// A slab that suddenly lies flat has jumped; as a box it counts where it stood.
+/// A slab that turns by a quarter has jumped; it is remembered as a box.
 void a_box_jumps_when_it_turns_about_its_longest_edge(void**) {
   const Vector3 edges(1, 0.5, 0.05);
   const Obstacle standing = box_obstacle(Vector3::Zero(), Matrix3::Identity(), edges);
@@ -88,8 +88,8 @@ void a_box_jumps_when_it_turns_about_its_longest_edge(void**) {
   check_near(scene.last().half_width_m.cwiseAbs().eval(), standing.half_width_m, 1e-12);
 }
 
-/// As one that is hidden for a moment: it goes on at its velocity.
-void what_vanishes_counts_for_a_while_where_it_would_be(void**) {
+/// A vanished obstacle may be hidden; its velocity is assumed constant.
+void a_vanished_obstacle_counts_for_a_while_at_its_extrapolated_position(void**) {
   Scene scene;
   Obstacle moving = ball(1, Vector3(0, 0, 1));
   moving.velocity_mps = Vector3(0.5, 0, 0);
@@ -103,15 +103,15 @@ void what_vanishes_counts_for_a_while_where_it_would_be(void**) {
   check_near((periods + 1) * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
 }
 
-void what_comes_back_has_no_old_place_and_does_not_jump(void**) {
+void an_obstacle_that_returns_is_not_remembered_and_does_not_jump(void**) {
   Scene scene;
   scene.send({ball(1, Vector3(0, 0, 0)), ball(7, Vector3(0, 0, 0))});
   assert_int_equal(scene.send({ball(7, Vector3(0, 0, 0))}), 1);
   assert_int_equal(scene.send({ball(7, Vector3(0, 0, 0)), ball(1, Vector3(5, 0, 0))}), 0);
 }
 
-/// Each reports but its own; together they report all, however many.
-void two_who_take_turns_are_heard_both(void**) {
+/// Each sender reports only its own obstacles, few or many.
+void the_obstacles_of_two_alternating_senders_all_count(void**) {
   Random random(3);
   for (const int count : {1, 10, 300}) {
     std::vector<Obstacle> one, other;
@@ -126,8 +126,8 @@ void two_who_take_turns_are_heard_both(void**) {
   }
 }
 
-/// One who reports is always late by the other's clock. What both know counts once.
-void who_is_always_late_is_heard_too(void**) {
+/// The clock of one of two senders is behind. An obstacle that both report counts once.
+void the_obstacles_of_a_sender_that_is_always_late_count(void**) {
   Scene scene;
   ObstacleSet late;
   late.count = 2;
@@ -136,12 +136,12 @@ void who_is_always_late_is_heard_too(void**) {
   late.obstacles[0].velocity_mps = Vector3(0, 0.5, 0);
   for (int turn = 0; turn < 100; ++turn) {
     scene.now_s += 0.5 * kPeriod_s;
-    scene.places->add_late_set(late, 0.1, scene.now_s);
+    scene.memory->add_late_set(late, 0.1, scene.now_s);
     assert_int_equal(scene.send({ball(1, Vector3(1, 0, 0)), ball(5, Vector3(0, 0, 1))}, 0.5 * kPeriod_s), 1);
     check_near(scene.last().capsule.start, Vector3(0, 1 + 0.5 * 0.5 * kPeriod_s, 0), 1e-12);
   }
-  late.obstacles[1] = ball(5, Vector3(0, 0, 2));  // of the same name
-  scene.places->add_late_set(late, 0.1, scene.now_s);
+  late.obstacles[1] = ball(5, Vector3(0, 0, 2));  // another obstacle with the same id
+  scene.memory->add_late_set(late, 0.1, scene.now_s);
   assert_int_equal(scene.send({ball(1, Vector3(1, 0, 0)), ball(5, Vector3(0, 0, 1))}), 2);
   int periods = 0;
   while (scene.send({}) > 0 && ++periods < 1000) {
@@ -149,7 +149,7 @@ void who_is_always_late_is_heard_too(void**) {
   check_near(periods * kPeriod_s, kMemory_s, 2.01 * kPeriod_s);
 }
 
-void the_order_of_a_message_does_not_matter(void**) {
+void the_order_of_obstacles_in_a_message_does_not_matter(void**) {
   Random random(1);
   std::vector<Obstacle> obstacles;
   for (int i = 0; i < 100; ++i) obstacles.push_back(ball(i / 2, random.inside(-2, 2)));  // two with each id
@@ -161,7 +161,7 @@ void the_order_of_a_message_does_not_matter(void**) {
   }
 }
 
-void a_clock_that_is_set_back_forgets(void**) {
+void a_clock_that_is_set_back_clears_the_memory(void**) {
   Scene scene;
   scene.now_s = 1000.0;
   scene.send({ball(1, Vector3(0, 0, 0))});
@@ -170,7 +170,7 @@ void a_clock_that_is_set_back_forgets(void**) {
   assert_int_equal(scene.send({ball(1, Vector3(1, 0, 0))}), 0);
 }
 
-void as_many_as_a_set_holds_are_bounded_and_allocate_nothing(void**) {
+void a_full_set_of_jumping_obstacles_is_bounded_and_allocates_nothing(void**) {
   Random random(2);
   Scene scene;
   std::vector<Obstacle> obstacles;
@@ -193,17 +193,17 @@ void as_many_as_a_set_holds_are_bounded_and_allocate_nothing(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(what_jumps_counts_in_its_old_place_too_for_a_while),
-      cmocka_unit_test(what_moves_as_fast_as_it_may_is_no_jump),
-      cmocka_unit_test(an_axis_jumps_when_an_end_of_it_does),
+      cmocka_unit_test(an_obstacle_that_jumps_also_counts_at_its_last_position_for_a_while),
+      cmocka_unit_test(motion_within_the_speed_bound_is_no_jump),
+      cmocka_unit_test(a_capsule_jumps_when_an_end_of_its_axis_does),
       cmocka_unit_test(a_box_jumps_when_it_turns_about_its_longest_edge),
-      cmocka_unit_test(what_vanishes_counts_for_a_while_where_it_would_be),
-      cmocka_unit_test(what_comes_back_has_no_old_place_and_does_not_jump),
-      cmocka_unit_test(two_who_take_turns_are_heard_both),
-      cmocka_unit_test(who_is_always_late_is_heard_too),
-      cmocka_unit_test(the_order_of_a_message_does_not_matter),
-      cmocka_unit_test(a_clock_that_is_set_back_forgets),
-      cmocka_unit_test(as_many_as_a_set_holds_are_bounded_and_allocate_nothing),
+      cmocka_unit_test(a_vanished_obstacle_counts_for_a_while_at_its_extrapolated_position),
+      cmocka_unit_test(an_obstacle_that_returns_is_not_remembered_and_does_not_jump),
+      cmocka_unit_test(the_obstacles_of_two_alternating_senders_all_count),
+      cmocka_unit_test(the_obstacles_of_a_sender_that_is_always_late_count),
+      cmocka_unit_test(the_order_of_obstacles_in_a_message_does_not_matter),
+      cmocka_unit_test(a_clock_that_is_set_back_clears_the_memory),
+      cmocka_unit_test(a_full_set_of_jumping_obstacles_is_bounded_and_allocates_nothing),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

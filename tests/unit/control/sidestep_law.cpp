@@ -13,7 +13,7 @@ namespace {
 
 const SidestepGains kGains;
 
-NominalCommand wish_at(const JointVector& q_rad, const Target& target) {
+NominalCommand nominal_at(const JointVector& q_rad, const Target& target) {
   const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
   const JointVector at_rest = JointVector::Zero(q_rad.size());
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
@@ -36,26 +36,26 @@ double smallest_singular_value(const JointVector& q_rad, int rows) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues()[rows - 1];
 }
 
-/// A posture in which the law does not damp.
-JointVector regular_posture(Random& random, int rows) {
+/// A random configuration without damping by the law.
+JointVector regular_configuration(Random& random, int rows) {
   JointVector q_rad = random.poses(lwa3());
   while (smallest_singular_value(q_rad, rows) < kGains.sigma_0) q_rad = random.poses(lwa3());
   return q_rad;
 }
 
-TaskVector tool_motion(const JointVector& q_rad, const NominalCommand& wish, int rows) {
-  return tool_jacobian(forward_kinematics(lwa3(), q_rad), rows) * wish.velocity_radps;
+TaskVector tool_motion(const JointVector& q_rad, const NominalCommand& nominal, int rows) {
+  return tool_jacobian(forward_kinematics(lwa3(), q_rad), rows) * nominal.velocity_radps;
 }
 
-void at_a_still_target_no_wish_moves_the_tool(void**) {
+void at_a_still_target_the_nominal_velocity_does_not_move_the_tool(void**) {
   Random random(1);
   for (int trial = 0; trial < 1000; ++trial) {
     const bool rotated = trial % 2;
     const int rows = rotated ? 6 : 3;
-    const JointVector q_rad = regular_posture(random, rows);
-    const NominalCommand wish = wish_at(q_rad, target_at(q_rad, rotated));
-    check_near(wish.damping, 0.0, 0.0);
-    check_near_because(tool_motion(q_rad, wish, rows), TaskVector(TaskVector::Zero(rows)), 1e-9, "trial %d", trial);
+    const JointVector q_rad = regular_configuration(random, rows);
+    const NominalCommand nominal = nominal_at(q_rad, target_at(q_rad, rotated));
+    check_near(nominal.damping, 0.0, 0.0);
+    check_near_because(tool_motion(q_rad, nominal, rows), TaskVector(TaskVector::Zero(rows)), 1e-9, "trial %d", trial);
   }
 }
 
@@ -64,36 +64,36 @@ void at_a_moving_target_the_tool_moves_with_it(void**) {
   for (int trial = 0; trial < 1000; ++trial) {
     const bool rotated = trial % 2;
     const int rows = rotated ? 6 : 3;
-    const JointVector q_rad = regular_posture(random, rows);
+    const JointVector q_rad = regular_configuration(random, rows);
     Target target = target_at(q_rad, rotated);
-    target.velocity_mps = random.inside(-2, 2);  // its own speed is not limited
+    target.velocity_mps = random.inside(-2, 2);  // the target's own speed is not limited
     target.angular_velocity_radps = random.inside(-2, 2);
     TaskVector expected(rows);
     expected.head<3>() = target.velocity_mps;
     if (rotated) expected.tail<3>() = target.angular_velocity_radps;
-    check_near_because(tool_motion(q_rad, wish_at(q_rad, target), rows), expected, 1e-9, "trial %d", trial);
+    check_near_because(tool_motion(q_rad, nominal_at(q_rad, target), rows), expected, 1e-9, "trial %d", trial);
   }
 }
 
-void toward_a_target_the_tool_goes_straight_and_no_faster_than_allowed(void**) {
+void toward_a_target_the_tool_moves_straight_within_its_speed_limit(void**) {
   Random random(3);
   for (int trial = 0; trial < 500; ++trial) {
-    const JointVector q_rad = regular_posture(random, 3);
+    const JointVector q_rad = regular_configuration(random, 3);
     Target target = target_at(q_rad, false);
     const double distance_m = random.uniform(0.01, 0.5);
-    const Vector3 way = random.direction();
-    target.position_m += distance_m * way;
-    const NominalCommand wish = wish_at(q_rad, target);
+    const Vector3 direction = random.direction();
+    target.position_m += distance_m * direction;
+    const NominalCommand nominal = nominal_at(q_rad, target);
     const double speed_mps = std::min(kGains.v_max_mps, kGains.k_pos_per_s * distance_m);
-    check_near_because(tool_motion(q_rad, wish, 3), TaskVector(speed_mps * way), 1e-9, "trial %d", trial);
-    assert_int_equal(wish.task_speed_limited, kGains.k_pos_per_s * distance_m > kGains.v_max_mps);
+    check_near_because(tool_motion(q_rad, nominal, 3), TaskVector(speed_mps * direction), 1e-9, "trial %d", trial);
+    assert_int_equal(nominal.task_speed_limited, kGains.k_pos_per_s * distance_m > kGains.v_max_mps);
   }
 }
 
-void toward_an_orientation_the_tool_turns_the_shortest_way(void**) {
+void toward_an_orientation_the_tool_turns_by_the_shortest_rotation(void**) {
   Random random(4);
   for (int trial = 0; trial < 500; ++trial) {
-    const JointVector q_rad = regular_posture(random, 6);
+    const JointVector q_rad = regular_configuration(random, 6);
     Target target = target_at(q_rad, true);
     const Vector3 axis = random.direction();
     const double angle_rad = random.uniform(0.0, 3.0);
@@ -101,24 +101,24 @@ void toward_an_orientation_the_tool_turns_the_shortest_way(void**) {
     if (trial % 2) target.orientation.coeffs() *= -1.0;  // the same orientation
     TaskVector expected = TaskVector::Zero(6);
     expected.tail<3>() = kGains.k_ori_per_s * angle_rad * axis;
-    check_near_because(tool_motion(q_rad, wish_at(q_rad, target), 6), expected, 1e-6, "trial %d", trial);
+    check_near_because(tool_motion(q_rad, nominal_at(q_rad, target), 6), expected, 1e-6, "trial %d", trial);
   }
 }
 
-/// Straight through the singular postures: stretched out, and home, where the wrist is straight.
-void through_singular_postures_the_wish_changes_without_a_jump(void**) {
+/// Straight lines in joint space through singular configurations: the stretched arm, and home with its straight wrist.
+void through_singular_configurations_the_nominal_velocity_is_continuous(void**) {
   Random random(5);
   for (int trial = 0; trial < 40; ++trial) {
     const JointVector through_rad = trial % 2 ? home_rad() : JointVector(JointVector::Zero(7));
-    const JointVector way = random.joints(7, -1, 1).normalized();
+    const JointVector direction = random.joints(7, -1, 1).normalized();
     Target target = target_at(through_rad, trial % 4 > 1);
     target.position_m += random.inside(-0.3, 0.3);
     target.velocity_mps = random.inside(-0.5, 0.5);
     const double step_rad = 1e-4, steepest_per_s = 2000.0;  // v / lambda_0^2 = 400/s for each m/s
     JointVector last_radps;
     for (int i = -1000; i <= 1000; ++i) {
-      const JointVector q_rad = through_rad + i * step_rad * way;
-      const JointVector nominal_radps = wish_at(q_rad, target).velocity_radps;
+      const JointVector q_rad = through_rad + i * step_rad * direction;
+      const JointVector nominal_radps = nominal_at(q_rad, target).velocity_radps;
       check(nominal_radps.allFinite() && nominal_radps.norm() < 100.0, "trial %d, step %d: %g rad/s", trial, i,
             nominal_radps.norm());
       if (i > -1000)
@@ -129,13 +129,13 @@ void through_singular_postures_the_wish_changes_without_a_jump(void**) {
   }
 }
 
-/// Largest share of its way from the middle of its range that a joint has gone toward a limit.
-double most_extreme(const JointVector& q_rad) {
+/// Largest ratio of a joint's position to its limit.
+double largest_share_of_limit(const JointVector& q_rad) {
   const JointLimits& limits = lwa3().limits;
   return q_rad.cwiseQuotient(limits.upper_rad).cwiseAbs().maxCoeff();
 }
 
-void joints_near_their_limits_come_back_while_the_tool_stays(void**) {
+void joints_near_their_limits_return_while_the_tool_stays(void**) {
   Random random(6);
   for (int trial = 0; trial < 20; ++trial) {
     JointVector q_rad = 0.5 * random.poses(lwa3());
@@ -143,10 +143,10 @@ void joints_near_their_limits_come_back_while_the_tool_stays(void**) {
     q_rad[joint] = 0.99 * lwa3().limits.upper_rad[joint];
     if (smallest_singular_value(q_rad, 3) < 2.0 * kGains.sigma_0) continue;
     const Target target = target_at(q_rad, false);
-    const double before = most_extreme(q_rad);
-    for (int cycle = 0; cycle < 500; ++cycle) q_rad += 0.01 * wish_at(q_rad, target).velocity_radps;
-    check(most_extreme(q_rad) < before - 0.02, "trial %d: from %g to %g of the range", trial, before,
-          most_extreme(q_rad));
+    const double before = largest_share_of_limit(q_rad);
+    for (int cycle = 0; cycle < 500; ++cycle) q_rad += 0.01 * nominal_at(q_rad, target).velocity_radps;
+    check(largest_share_of_limit(q_rad) < before - 0.02, "trial %d: from %g to %g of the range", trial, before,
+          largest_share_of_limit(q_rad));
     check_near_because(forward_kinematics(lwa3(), q_rad).tool_position, target.position_m, 1e-3, "trial %d", trial);
   }
 }
@@ -155,12 +155,12 @@ void joints_near_their_limits_come_back_while_the_tool_stays(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(at_a_still_target_no_wish_moves_the_tool),
+      cmocka_unit_test(at_a_still_target_the_nominal_velocity_does_not_move_the_tool),
       cmocka_unit_test(at_a_moving_target_the_tool_moves_with_it),
-      cmocka_unit_test(toward_a_target_the_tool_goes_straight_and_no_faster_than_allowed),
-      cmocka_unit_test(toward_an_orientation_the_tool_turns_the_shortest_way),
-      cmocka_unit_test(through_singular_postures_the_wish_changes_without_a_jump),
-      cmocka_unit_test(joints_near_their_limits_come_back_while_the_tool_stays),
+      cmocka_unit_test(toward_a_target_the_tool_moves_straight_within_its_speed_limit),
+      cmocka_unit_test(toward_an_orientation_the_tool_turns_by_the_shortest_rotation),
+      cmocka_unit_test(through_singular_configurations_the_nominal_velocity_is_continuous),
+      cmocka_unit_test(joints_near_their_limits_return_while_the_tool_stays),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -10,13 +10,13 @@ using namespace sidestep;
 
 namespace {
 
-constexpr int kFacts = 13;
-static_assert(sizeof(InputStatus) == kFacts, "a new fact belongs into facts_of()");
+constexpr int kFlags = 13;
+static_assert(sizeof(InputStatus) == kFlags, "a new flag belongs into status_of()");
 const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
 
-InputStatus facts_of(unsigned bits) {
+InputStatus status_of(unsigned bits) {
   InputStatus status;
-  bool* const all[kFacts] = {&status.arm_known,
+  bool* const all[kFlags] = {&status.arm_known,
                              &status.arm_fresh,
                              &status.arm_lost,
                              &status.arm_consistent,
@@ -29,11 +29,11 @@ InputStatus facts_of(unsigned bits) {
                              &status.late,
                              &status.stop,
                              &status.foreign_command};
-  for (int i = 0; i < kFacts; ++i) *all[i] = bits >> i & 1;
+  for (int i = 0; i < kFlags; ++i) *all[i] = bits >> i & 1;
   return status;
 }
 
-/// Facts that observe() can produce; the others are asked too, but only for what must hold of any.
+/// Flags that monitor_inputs() can produce. Other combinations are tested only for properties that hold for all.
 bool possible(const InputStatus& f) {
   if (f.arm_fresh && (!f.arm_known || f.arm_lost)) return false;
   if ((f.arm_lost || f.arm_inconsistent || f.arm_consistent) && !f.arm_known) return false;
@@ -43,16 +43,16 @@ bool possible(const InputStatus& f) {
 
 using Property = std::function<bool(const Supervision& last, const InputStatus&, const Supervision& next)>;
 
-/// Holds a property against every mode, fault and combination of facts.
+/// Checks a property for every mode, fault and combination of flags.
 void check_always(const char* name, const Property& property, bool only_possible = false) {
   for (const Mode mode : kModes) {
-    for (unsigned bits = 0; bits < 1u << kFacts; ++bits) {
-      const InputStatus status = facts_of(bits);
+    for (unsigned bits = 0; bits < 1u << kFlags; ++bits) {
+      const InputStatus status = status_of(bits);
       if (only_possible && !possible(status)) continue;
       for (const Fault fault : {Fault::kArmStateLost, Fault::kArmStateInconsistent, Fault::kNotFinite}) {
         const Supervision last{mode, mode == Mode::kFault ? fault : Fault::kNone, "before"};
         const Supervision next = next_mode(last, status);
-        check(property(last, status, next), "%s: mode %d, facts 0x%x -> mode %d, fault %d", name,
+        check(property(last, status, next), "%s: mode %d, flags 0x%x -> mode %d, fault %d", name,
               static_cast<int>(mode), bits, static_cast<int>(next.mode), static_cast<int>(next.fault));
       }
     }
@@ -70,44 +70,44 @@ void tracking_needs_everything_fresh(void**) {
   });
 }
 
-void what_stood_still_does_not_start_on_old_obstacles(void**) {
+void a_stopped_arm_does_not_start_on_old_obstacles(void**) {
   check_always("start", [](const auto& last, const InputStatus& f, const auto& next) {
-    const bool stood = last.mode == Mode::kWait || last.mode == Mode::kFault;
-    return !stood || f.obstacles_fresh || !may_move(next.mode);
+    const bool stopped = last.mode == Mode::kWait || last.mode == Mode::kFault;
+    return !stopped || f.obstacles_fresh || !may_move(next.mode);
   });
 }
 
-void a_wish_to_stop_never_leads_to_moving(void**) {
+void a_request_to_stop_never_leads_to_a_moving_mode(void**) {
   check_always("stop",
                [](const auto&, const InputStatus& f, const auto& next) { return !f.stop || !may_move(next.mode); });
 }
 
-void beside_another_controller_nothing_moves(void**) {
-  check_always("rival", [](const auto&, const InputStatus& f, const auto& next) {
+void the_arm_does_not_move_while_another_controller_commands_it(void**) {
+  check_always("foreign command", [](const auto&, const InputStatus& f, const auto& next) {
     return !f.foreign_command || !may_move(next.mode);
   });
 }
 
-void nothing_moves_without_a_fresh_arm_state(void**) {
+void the_arm_does_not_move_without_a_fresh_arm_state(void**) {
   check_always(
       "arm", [](const auto&, const InputStatus& f, const auto& next) { return f.arm_fresh || !may_move(next.mode); },
       true);
 }
 
-void nothing_starts_without_consistent_arm_states_and_known_obstacles(void**) {
+void the_arm_starts_only_with_consistent_states_and_known_obstacles(void**) {
   check_always("start", [](const Supervision& last, const InputStatus& f, const auto& next) {
     const bool starts = (last.mode == Mode::kWait || last.mode == Mode::kFault) && may_move(next.mode);
     return !starts || (f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && f.obstacles_known);
   });
 }
 
-void a_start_is_always_a_hold(void**) {
+void a_start_never_leads_directly_to_track(void**) {
   check_always("hold first", [](const Supervision& last, const auto&, const auto& next) {
     return (last.mode != Mode::kWait && last.mode != Mode::kFault) || next.mode != Mode::kTrack;
   });
 }
 
-void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
+void a_lost_or_inconsistent_arm_is_a_fault_of_that_name(void**) {
   check_always("fault", [](const Supervision& last, const InputStatus& f, const auto& next) {
     if (last.mode == Mode::kWait) return next.fault == Fault::kNone;
     if (f.arm_inconsistent) return next.mode == Mode::kFault && next.fault == Fault::kArmStateInconsistent;
@@ -119,20 +119,20 @@ void a_lost_or_contradictory_arm_is_a_fault_of_that_name(void**) {
 void a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh(void**) {
   check_always("latched", [](const Supervision& last, const InputStatus& f, const auto& next) {
     if (last.mode != Mode::kFault || f.arm_inconsistent || f.arm_lost) return true;
-    const bool obstacles = f.obstacles_fresh || !f.obstacles_known;  // without any it waits
+    const bool obstacles = f.obstacles_fresh || !f.obstacles_known;  // without any the next mode is WAIT
     const bool ready = f.arm_known && f.arm_fresh && f.arm_consistent && !f.arm_starting && obstacles;
     if (ready && !f.stop && !f.foreign_command) return next.mode != Mode::kFault;
     return next.mode == Mode::kFault && next.fault == last.fault;
   });
 }
 
-void only_a_fault_has_a_fault(void**) {
+void a_fault_is_named_exactly_in_mode_fault(void**) {
   check_always("named", [](const auto&, const auto&, const auto& next) {
     return (next.mode == Mode::kFault) == (next.fault != Fault::kNone);
   });
 }
 
-void old_obstacles_and_lateness_brake(void**) {
+void every_reason_to_brake_leads_to_brake(void**) {
   check_always("brake", [](const Supervision& last, const InputStatus& f, const auto& next) {
     if (last.mode == Mode::kWait || last.mode == Mode::kFault || f.arm_inconsistent || f.arm_lost) return true;
     const bool reason = f.stop || f.foreign_command || !f.arm_fresh || !f.obstacles_fresh || f.late;
@@ -140,26 +140,26 @@ void old_obstacles_and_lateness_brake(void**) {
   });
 }
 
-void without_a_fresh_target_it_holds(void**) {
+void without_a_fresh_target_the_mode_is_hold(void**) {
   check_always("hold", [](const Supervision& last, const InputStatus& f, const auto& next) {
-    const bool calm = f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
-                      !f.late && !f.stop && !f.foreign_command;
-    if (last.mode == Mode::kWait || last.mode == Mode::kFault || !calm) return true;
+    const bool undisturbed = f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
+                             !f.late && !f.stop && !f.foreign_command;
+    if (last.mode == Mode::kWait || last.mode == Mode::kFault || !undisturbed) return true;
     return next.mode == (f.target_known && f.target_fresh ? Mode::kTrack : Mode::kHold);
   });
 }
 
-void it_never_falls_back_to_waiting_once_it_ran(void**) {
+void a_running_controller_waits_again_only_after_a_fault_without_obstacles(void**) {
   check_always("wait", [](const Supervision& last, const InputStatus& f, const auto& next) {
     const bool from_fault = last.mode == Mode::kFault && !f.obstacles_known;
     return next.mode != Mode::kWait || last.mode == Mode::kWait || from_fault;
   });
 }
 
-void every_mode_can_be_reached_and_says_so_in_words(void**) {
+void every_mode_is_reachable_and_has_a_message(void**) {
   std::set<Mode> reached;
   std::set<std::string> messages;
-  check_always("words", [&](const auto&, const auto&, const auto& next) {
+  check_always("message", [&](const auto&, const auto&, const auto& next) {
     reached.insert(next.mode);
     messages.insert(next.message);
     return next.message && *next.message && std::string(next.message) != "before";
@@ -168,8 +168,7 @@ void every_mode_can_be_reached_and_says_so_in_words(void**) {
   check(messages.size() >= 15, "%zu messages", messages.size());
 }
 
-/// The life of a run, step by step.
-void an_ordinary_run(void**) {
+void an_ordinary_run_passes_through_the_expected_modes(void**) {
   InputStatus f;
   Supervision now;
   const auto then = [&](Mode mode, const char* word) {
@@ -219,20 +218,20 @@ void an_ordinary_run(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(tracking_needs_everything_fresh),
-      cmocka_unit_test(what_stood_still_does_not_start_on_old_obstacles),
-      cmocka_unit_test(a_wish_to_stop_never_leads_to_moving),
-      cmocka_unit_test(beside_another_controller_nothing_moves),
-      cmocka_unit_test(nothing_moves_without_a_fresh_arm_state),
-      cmocka_unit_test(nothing_starts_without_consistent_arm_states_and_known_obstacles),
-      cmocka_unit_test(a_start_is_always_a_hold),
-      cmocka_unit_test(a_lost_or_contradictory_arm_is_a_fault_of_that_name),
+      cmocka_unit_test(a_stopped_arm_does_not_start_on_old_obstacles),
+      cmocka_unit_test(a_request_to_stop_never_leads_to_a_moving_mode),
+      cmocka_unit_test(the_arm_does_not_move_while_another_controller_commands_it),
+      cmocka_unit_test(the_arm_does_not_move_without_a_fresh_arm_state),
+      cmocka_unit_test(the_arm_starts_only_with_consistent_states_and_known_obstacles),
+      cmocka_unit_test(a_start_never_leads_directly_to_track),
+      cmocka_unit_test(a_lost_or_inconsistent_arm_is_a_fault_of_that_name),
       cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh),
-      cmocka_unit_test(only_a_fault_has_a_fault),
-      cmocka_unit_test(old_obstacles_and_lateness_brake),
-      cmocka_unit_test(without_a_fresh_target_it_holds),
-      cmocka_unit_test(it_never_falls_back_to_waiting_once_it_ran),
-      cmocka_unit_test(every_mode_can_be_reached_and_says_so_in_words),
-      cmocka_unit_test(an_ordinary_run),
+      cmocka_unit_test(a_fault_is_named_exactly_in_mode_fault),
+      cmocka_unit_test(every_reason_to_brake_leads_to_brake),
+      cmocka_unit_test(without_a_fresh_target_the_mode_is_hold),
+      cmocka_unit_test(a_running_controller_waits_again_only_after_a_fault_without_obstacles),
+      cmocka_unit_test(every_mode_is_reachable_and_has_a_message),
+      cmocka_unit_test(an_ordinary_run_passes_through_the_expected_modes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -13,7 +13,7 @@ JointVector all(double value) {
   return JointVector::Constant(6, value);
 }
 
-/// A check that has seen a sound stream: 0.3 s of acceleration at 5 rad/s2 from 0.1 rad, then steady.
+/// A check after a valid stream: 0.3 s of acceleration at 5 rad/s2 from 0.1 rad, then constant velocity.
 struct Stream {
   CommandCheck watch;
   JointVector position_rad = all(0.1), velocity_radps = all(0.0);
@@ -36,7 +36,7 @@ JointVector with(JointVector vector, int joint, double change) {
   return vector;
 }
 
-void a_sound_stream_passes(void**) {
+void a_valid_stream_passes(void**) {
   Stream stream;
   while (stream.velocity_radps[0] > 0) stream.go((stream.velocity_radps - all(0.1)).cwiseMax(0.0));
   stream.watch.end();
@@ -44,7 +44,7 @@ void a_sound_stream_passes(void**) {
   assert_true(stream.watch.fed() > 50);
 }
 
-void a_position_jump_is_seen(void**) {
+void a_position_jump_is_detected(void**) {
   for (int joint = 0; joint < 6; ++joint) {
     Stream stream;
     stream.watch.feed(with(stream.next_rad(), joint, 0.03), stream.velocity_radps);
@@ -53,19 +53,19 @@ void a_position_jump_is_seen(void**) {
   }
 }
 
-void a_position_beside_its_velocity_is_seen(void**) {
+void a_position_that_deviates_from_its_velocity_is_detected(void**) {
   Stream stream;
   stream.watch.feed(with(stream.next_rad(), 2, 1e-6), stream.velocity_radps);
   check(stream.complains_of("leads"), "%s", stream.watch.complaint().c_str());
 }
 
-void too_much_acceleration_is_seen(void**) {
+void too_much_acceleration_is_detected(void**) {
   Stream stream;
   stream.go(with(stream.velocity_radps, 3, 0.1 + 1e-6));
   check(stream.complains_of("velocity changes"), "%s", stream.watch.complaint().c_str());
 }
 
-void too_much_velocity_is_seen(void**) {
+void too_much_velocity_is_detected(void**) {
   Stream stream;
   for (int i = 0; i < 5; ++i) stream.go(with(stream.velocity_radps, 1, 0.1));
   assert_string_equal(stream.watch.complaint().c_str(), "");
@@ -73,36 +73,37 @@ void too_much_velocity_is_seen(void**) {
   check(stream.complains_of("velocity 2.01"), "%s", stream.watch.complaint().c_str());
 }
 
-void leaving_the_position_limits_is_seen(void**) {
+void leaving_the_position_limits_is_detected(void**) {
   Stream stream;
   for (int i = 0; i < 100; ++i) stream.go(stream.velocity_radps);
   check(stream.complains_of("outside"), "%s", stream.watch.complaint().c_str());
 }
 
-void returning_from_outside_is_no_offence(void**) {
+void returning_from_outside_the_limits_is_allowed(void**) {
   CommandCheck returning({all(-1), all(1), all(2), all(10)}, kPeriod_s);
   returning.begin(all(1.5), all(0));
   returning.feed(all(1.499), all(-0.1));
   assert_string_equal(returning.complaint().c_str(), "");
 }
 
-/// An arm that is moved is caught up with by positions beside the velocity; but only as a joint could.
-void a_hop_is_seen_even_while_catching_up(void**) {
-  CommandCheck soft({all(-1), all(1), all(2), all(10)}, kPeriod_s), hop = soft;
-  for (CommandCheck* watch : {&soft, &hop}) {
+/// While the command catches up with a pushed arm, its positions may deviate from its velocity, but only as fast as a
+/// joint could move.
+void a_jump_is_detected_even_while_catching_up(void**) {
+  CommandCheck gradual({all(-1), all(1), all(2), all(10)}, kPeriod_s), jump = gradual;
+  for (CommandCheck* watch : {&gradual, &jump}) {
     watch->grant_catching_up();
     watch->begin(all(0.5), all(0));
   }
-  soft.feed(all(0.501), all(0));
-  soft.feed(all(0.503), all(0));
-  assert_string_equal(soft.complaint().c_str(), "");
-  soft.feed(all(0.506 + 1e-6), all(0));
-  assert_true(soft.complaint().find("rate changes") != std::string::npos);
-  hop.feed(all(0.502), all(0));
-  assert_true(hop.complaint().find("rate changes") != std::string::npos);
+  gradual.feed(all(0.501), all(0));
+  gradual.feed(all(0.503), all(0));
+  assert_string_equal(gradual.complaint().c_str(), "");
+  gradual.feed(all(0.506 + 1e-6), all(0));
+  assert_true(gradual.complaint().find("rate changes") != std::string::npos);
+  jump.feed(all(0.502), all(0));
+  assert_true(jump.complaint().find("rate changes") != std::string::npos);
 }
 
-void values_that_are_not_finite_are_seen(void**) {
+void values_that_are_not_finite_are_detected(void**) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     Stream position, velocity;
     position.watch.feed(with(position.next_rad(), 5, bad), position.velocity_radps);
@@ -112,20 +113,20 @@ void values_that_are_not_finite_are_seen(void**) {
   }
 }
 
-void a_wrong_number_of_joints_is_seen(void**) {
+void a_wrong_number_of_joints_is_detected(void**) {
   Stream stream;
   stream.watch.feed(JointVector::Zero(7), JointVector::Zero(7));
   assert_true(stream.complains_of("number of joints"));
 }
 
-void a_stream_that_begins_elsewhere_is_seen(void**) {
+void a_stream_that_begins_elsewhere_is_detected(void**) {
   CommandCheck begun({all(-1), all(1), all(2), all(10)}, kPeriod_s);
   begun.begin(all(0.5), all(0));
   begun.feed(all(0.4), all(0));
   assert_true(begun.complaint().find("jumps") != std::string::npos);
 }
 
-void a_stream_that_ends_in_motion_is_seen(void**) {
+void a_stream_that_ends_in_motion_is_detected(void**) {
   Stream stream;
   stream.watch.end();
   assert_true(stream.complains_of("ends in motion"));
@@ -143,18 +144,18 @@ void the_first_complaint_is_kept(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_sound_stream_passes),
-      cmocka_unit_test(a_position_jump_is_seen),
-      cmocka_unit_test(a_position_beside_its_velocity_is_seen),
-      cmocka_unit_test(too_much_acceleration_is_seen),
-      cmocka_unit_test(too_much_velocity_is_seen),
-      cmocka_unit_test(leaving_the_position_limits_is_seen),
-      cmocka_unit_test(returning_from_outside_is_no_offence),
-      cmocka_unit_test(a_hop_is_seen_even_while_catching_up),
-      cmocka_unit_test(values_that_are_not_finite_are_seen),
-      cmocka_unit_test(a_wrong_number_of_joints_is_seen),
-      cmocka_unit_test(a_stream_that_begins_elsewhere_is_seen),
-      cmocka_unit_test(a_stream_that_ends_in_motion_is_seen),
+      cmocka_unit_test(a_valid_stream_passes),
+      cmocka_unit_test(a_position_jump_is_detected),
+      cmocka_unit_test(a_position_that_deviates_from_its_velocity_is_detected),
+      cmocka_unit_test(too_much_acceleration_is_detected),
+      cmocka_unit_test(too_much_velocity_is_detected),
+      cmocka_unit_test(leaving_the_position_limits_is_detected),
+      cmocka_unit_test(returning_from_outside_the_limits_is_allowed),
+      cmocka_unit_test(a_jump_is_detected_even_while_catching_up),
+      cmocka_unit_test(values_that_are_not_finite_are_detected),
+      cmocka_unit_test(a_wrong_number_of_joints_is_detected),
+      cmocka_unit_test(a_stream_that_begins_elsewhere_is_detected),
+      cmocka_unit_test(a_stream_that_ends_in_motion_is_detected),
       cmocka_unit_test(the_first_complaint_is_kept),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

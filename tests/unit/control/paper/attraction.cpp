@@ -26,7 +26,7 @@ void force_vanishes_at_the_target_with_its_velocity(void**) {
   check_near(attraction(PaperGains(), target, target.position_m, target.velocity_mps), Vector3(0, 0, 0), 0);
 }
 
-void a_quarter_turn_away_is_turned_back_about_its_axis(void**) {
+void a_quarter_turn_of_error_is_corrected_about_its_axis(void**) {
   PaperGains gains;
   gains.k_ori_per_s = 4.0;
   Target target;
@@ -36,7 +36,7 @@ void a_quarter_turn_away_is_turned_back_about_its_axis(void**) {
   check_near(rate, Vector3(0.1, 0, 2 * M_PI), 1e-12);
 }
 
-void an_orientation_reached_needs_only_the_targets_own_rate(void**) {
+void at_the_targets_orientation_the_rate_is_the_targets_own(void**) {
   Target target;
   target.orientation = Quaternion(Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()));
   target.angular_velocity_radps = Vector3(0.1, -0.2, 0.3);
@@ -44,9 +44,9 @@ void an_orientation_reached_needs_only_the_targets_own_rate(void**) {
   check_near(rate, target.angular_velocity_radps, 1e-7);
 }
 
-/// Following the rate must shrink the angle by k_ori, from any orientation, and a quaternion and its negative are the
-/// same orientation.
-void following_the_rate_turns_straight_to_the_target(void**) {
+/// From any orientation the rate is k_ori times the angle to the target. A quaternion and its negative are one
+/// orientation.
+void the_rate_reduces_the_angle_to_the_target(void**) {
   Random random(1);
   PaperGains gains;
   for (int trial = 0; trial < 1000; ++trial) {
@@ -66,7 +66,7 @@ void following_the_rate_turns_straight_to_the_target(void**) {
   }
 }
 
-void half_a_turn_has_a_finite_answer(void**) {
+void half_a_turn_of_error_gives_a_finite_rate(void**) {
   Target target;
   for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1), Vector3(0.6, 0, 0.8)}) {
     target.orientation = Quaternion(Eigen::AngleAxisd(M_PI, axis));
@@ -82,10 +82,10 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(force_is_a_spring_and_a_damper_to_the_target),
       cmocka_unit_test(force_vanishes_at_the_target_with_its_velocity),
-      cmocka_unit_test(a_quarter_turn_away_is_turned_back_about_its_axis),
-      cmocka_unit_test(an_orientation_reached_needs_only_the_targets_own_rate),
-      cmocka_unit_test(following_the_rate_turns_straight_to_the_target),
-      cmocka_unit_test(half_a_turn_has_a_finite_answer),
+      cmocka_unit_test(a_quarter_turn_of_error_is_corrected_about_its_axis),
+      cmocka_unit_test(at_the_targets_orientation_the_rate_is_the_targets_own),
+      cmocka_unit_test(the_rate_reduces_the_angle_to_the_target),
+      cmocka_unit_test(half_a_turn_of_error_gives_a_finite_rate),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -19,27 +19,27 @@ PaperGains gains_of(double lambda_0, double sigma_0) {
   return gains;
 }
 
-/// A 3 x 7 Jacobian with these singular values, in no particular directions.
+/// A 3 x 7 Jacobian with these singular values in arbitrary directions.
 TaskJacobian jacobian_of(double s1, double s2, double s3) {
   TaskJacobian values = TaskJacobian::Zero(3, 7);
   values(0, 0) = s1;
   values(1, 1) = s2;
   values(2, 2) = s3;
-  JointMatrix turn = JointMatrix::Identity(7, 7);
+  JointMatrix rotation = JointMatrix::Identity(7, 7);
   for (int i = 0; i < 6; ++i) {
     JointMatrix one = JointMatrix::Identity(7, 7);
     const double c = std::cos(0.7 + i), s = std::sin(0.7 + i);
     one.block<2, 2>(i, i) << c, -s, s, c;
-    turn = turn * one;
+    rotation = rotation * one;
   }
-  return Matrix3(Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized())) * values * turn;
+  return Matrix3(Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized())) * values * rotation;
 }
 
 TaskJacobian random_jacobian(Random& random, int rows) {
   return tool_jacobian(forward_kinematics(lwa3(), random.poses(lwa3())), rows);
 }
 
-void damping_is_that_of_equation_6(void**) {
+void damping_equals_equation_6(void**) {
   const PaperGains gains = gains_of(0.08, 0.1);
   check_near(invert(gains, jacobian_of(1, 0.5, 0.1)).lambda, 0.0, 1e-12);
   check_near(invert(gains, jacobian_of(1, 0.5, 0.3)).lambda, 0.0, 0);
@@ -60,9 +60,9 @@ void damping_is_continuous_and_grows_toward_the_singularity(void**) {
 }
 
 /// eq (5) itself: J^T (J J^T + lambda^2 I)^-1.
-void inverse_is_that_of_equation_5_at_random_poses(void**) {
+void inverse_equals_equation_5_at_random_configurations(void**) {
   Random random(1);
-  const PaperGains gains = gains_of(0.3, 0.4);  // damped in most poses
+  const PaperGains gains = gains_of(0.3, 0.4);  // damped in most configurations
   int damped = 0;
   for (int trial = 0; trial < 500; ++trial) {
     const int rows = trial % 2 ? 3 : 6;
@@ -91,14 +91,14 @@ void without_damping_the_task_is_met_exactly(void**) {
   }
 }
 
-void check_projector(const TaskJacobian& j, const JointMatrix& n, int freedom, const char* where) {
+void check_projector(const TaskJacobian& j, const JointMatrix& n, int degrees_of_freedom, const char* where) {
   check_near_because(n * n, n, 1e-9, "N N = N, %s", where);
   check_near_because(n.transpose(), n, 1e-12, "symmetric, %s", where);
   check_near_because(j * n, TaskJacobian::Zero(j.rows(), j.cols()), 1e-5, "J N = 0, %s", where);
-  check_near_because(n.trace(), static_cast<double>(freedom), 1e-9, "freedom, %s", where);
+  check_near_because(n.trace(), static_cast<double>(degrees_of_freedom), 1e-9, "degrees of freedom, %s", where);
 }
 
-void null_space_is_a_projector_at_random_poses(void**) {
+void null_space_is_a_projector_at_random_configurations(void**) {
   Random random(3);
   for (int trial = 0; trial < 300; ++trial) {
     const TaskJacobian position = random_jacobian(random, 3), pose = random_jacobian(random, 6);
@@ -108,7 +108,7 @@ void null_space_is_a_projector_at_random_poses(void**) {
   }
 }
 
-void at_home_only_joints_5_and_7_are_free_of_a_pose_task(void**) {
+void a_pose_task_at_home_leaves_only_joints_5_and_7_free(void**) {
   const TaskJacobian j = tool_jacobian(forward_kinematics(lwa3(), home_rad()), 6);
   const JointMatrix n = invert(PaperGains(), j).null_space;
   check_projector(j, n, 1, "home");
@@ -118,7 +118,7 @@ void at_home_only_joints_5_and_7_are_free_of_a_pose_task(void**) {
   check_near(n, JointMatrix(free * free.transpose()), 1e-9);
 }
 
-void singular_postures_have_a_larger_null_space_and_finite_answers(void**) {
+void singular_configurations_have_a_larger_null_space_and_finite_velocities(void**) {
   const TaskJacobian upright =
       tool_jacobian(forward_kinematics(lwa3(), JointVector::Zero(7)), 3);  // joints 2, 4, 6: one direction
   const TaskInverse inverse = invert(PaperGains(), upright);
@@ -127,24 +127,25 @@ void singular_postures_have_a_larger_null_space_and_finite_answers(void**) {
   check((inverse * TaskVector::Constant(3, 1.0)).allFinite(), "upright");
   check((inverse * TaskVector::Constant(3, 1.0)).norm() < 10.0, "upright");
 
-  const TaskInverse nothing = invert(PaperGains(), TaskJacobian::Zero(6, 7));
-  check_near(nothing.null_space, JointMatrix::Identity(7, 7), 0);
-  check_near(nothing * TaskVector::Constant(6, 1.0), JointVector::Zero(7), 0);
+  const TaskInverse of_zero = invert(PaperGains(), TaskJacobian::Zero(6, 7));
+  check_near(of_zero.null_space, JointMatrix::Identity(7, 7), 0);
+  check_near(of_zero * TaskVector::Constant(6, 1.0), JointVector::Zero(7), 0);
 }
 
-/// Through the stretched arm: the answer is bounded by 1 / (2 lambda) near the singularity and never jumps.
-void answer_is_bounded_and_continuous_through_a_singularity(void**) {
+/// The elbow passes the stretched arm. Near the singularity a task velocity of 1 m/s gives at most 1 / (2 lambda).
+void velocity_is_bounded_and_continuous_through_a_singularity(void**) {
   JointVector q_rad = home_rad();
   q_rad[2] = 0.3;
   JointVector last;
   for (double elbow_rad = -0.4; elbow_rad <= 0.4; elbow_rad += 1e-3) {
     q_rad[3] = elbow_rad;
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
-    const JointVector answer =
+    const JointVector qd_radps =
         invert(PaperGains(), tool_jacobian(poses, 3)) * TaskVector(poses.tool_position.normalized());
-    check(answer.norm() < 15.0, "at %g: %g rad/s", elbow_rad, answer.norm());
-    if (last.size() > 0) check((answer - last).norm() < 0.5, "at %g it jumps by %g", elbow_rad, (answer - last).norm());
-    last = answer;
+    check(qd_radps.norm() < 15.0, "at %g: %g rad/s", elbow_rad, qd_radps.norm());
+    if (last.size() > 0)
+      check((qd_radps - last).norm() < 0.5, "at %g: a jump of %g rad/s", elbow_rad, (qd_radps - last).norm());
+    last = qd_radps;
   }
 }
 
@@ -168,14 +169,14 @@ void damped_solve_is_the_damped_inverse_of_three_rows(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(damping_is_that_of_equation_6),
+      cmocka_unit_test(damping_equals_equation_6),
       cmocka_unit_test(damping_is_continuous_and_grows_toward_the_singularity),
-      cmocka_unit_test(inverse_is_that_of_equation_5_at_random_poses),
+      cmocka_unit_test(inverse_equals_equation_5_at_random_configurations),
       cmocka_unit_test(without_damping_the_task_is_met_exactly),
-      cmocka_unit_test(null_space_is_a_projector_at_random_poses),
-      cmocka_unit_test(at_home_only_joints_5_and_7_are_free_of_a_pose_task),
-      cmocka_unit_test(singular_postures_have_a_larger_null_space_and_finite_answers),
-      cmocka_unit_test(answer_is_bounded_and_continuous_through_a_singularity),
+      cmocka_unit_test(null_space_is_a_projector_at_random_configurations),
+      cmocka_unit_test(a_pose_task_at_home_leaves_only_joints_5_and_7_free),
+      cmocka_unit_test(singular_configurations_have_a_larger_null_space_and_finite_velocities),
+      cmocka_unit_test(velocity_is_bounded_and_continuous_through_a_singularity),
       cmocka_unit_test(damped_solve_is_the_damped_inverse_of_three_rows),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

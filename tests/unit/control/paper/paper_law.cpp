@@ -46,8 +46,8 @@ class Case {
   std::map<std::string, std::string> text_;
 };
 
-/// The second opinion: an independent NumPy program, run now.
-std::vector<Case> ask_numpy(const std::string& arguments) {
+/// Random cases with the results of an independent NumPy program.
+std::vector<Case> numpy_cases(const std::string& arguments) {
   const std::string command = "build/venv/bin/python tests/support/paper_law.py cases " + arguments;
   FILE* output = popen(command.c_str(), "r");
   check(output != nullptr, "%s", command.c_str());
@@ -67,7 +67,7 @@ std::vector<Case> ask_numpy(const std::string& arguments) {
   return cases;
 }
 
-/// The state of a case, and the law's answer to it.
+/// The inputs of the law; nominal() evaluates it.
 class Scene {
  public:
   Scene() : obstacles_(std::make_unique<ObstacleSet>()) {}
@@ -83,7 +83,7 @@ class Scene {
     obstacle.velocity_mps = velocity_mps;
   }
 
-  NominalCommand answer(const Vector3* planned_mps = nullptr) {
+  NominalCommand nominal(const Vector3* planned_mps = nullptr) {
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
     const ObstacleView view{obstacles_->count > 0 ? obstacles_.get() : nullptr, 0.0, 0.0};
     const Clearance clearance = measure_clearance(lwa3(), poses, view, {0.4, 0.0});
@@ -98,7 +98,7 @@ class Scene {
 };
 
 void law_agrees_with_the_numpy_program(void**) {
-  const std::vector<Case> cases = ask_numpy("--seed 20240 --count 1600");
+  const std::vector<Case> cases = numpy_cases("--seed 20240 --count 1600");
   assert_int_equal(cases.size(), 1600);
   std::map<std::string, int> kinds;
   double worst = 0.0;
@@ -121,40 +121,40 @@ void law_agrees_with_the_numpy_program(void**) {
     scene.gains.tool_velocity = planned ? ToolVelocity::kPlanned : ToolVelocity::kMeasured;
     const Vector3 planned_mps = one.vector("planned_v");
 
-    const NominalCommand wish = scene.answer(planned ? &planned_mps : nullptr);
+    const NominalCommand command = scene.nominal(planned ? &planned_mps : nullptr);
     const std::string kind = one.word("kind");
     const JointVector expected = one.joints("expect_qd");
     const double tolerance = 1e-9 * std::max(1.0, expected.norm());
-    check_near_because(wish.velocity_radps, expected, tolerance, "case %zu, %s", i, kind.c_str());
-    check_near_because(wish.tool_velocity_mps, one.vector("expect_v"), 1e-10, "case %zu, %s", i, kind.c_str());
-    check_near_because(wish.beta, one.number("expect_beta"), 1e-10, "case %zu, %s", i, kind.c_str());
-    check_near_because(wish.damping, one.number("expect_damping"), 1e-9, "case %zu, %s", i, kind.c_str());
+    check_near_because(command.velocity_radps, expected, tolerance, "case %zu, %s", i, kind.c_str());
+    check_near_because(command.tool_velocity_mps, one.vector("expect_v"), 1e-10, "case %zu, %s", i, kind.c_str());
+    check_near_because(command.beta, one.number("expect_beta"), 1e-10, "case %zu, %s", i, kind.c_str());
+    check_near_because(command.damping, one.number("expect_damping"), 1e-9, "case %zu, %s", i, kind.c_str());
     const double d_0_m = one.number("expect_axis_distance");
     if (d_0_m >= 0)
       check_near_because(scene.nearest_axis.axis_distance_m, d_0_m, 1e-12, "case %zu, %s", i, kind.c_str());
-    worst = std::max(worst, test::gap(wish.velocity_radps, expected));
+    worst = std::max(worst, test::gap(command.velocity_radps, expected));
     ++kinds[kind];
   }
   check(kinds.size() >= 16, "%zu kinds of case", kinds.size());
   print_message("largest difference of %zu cases: %.1e rad/s\n", cases.size(), worst);
 }
 
-void without_obstacles_and_errors_the_arm_rests(void**) {
+void at_the_target_without_obstacles_the_arm_rests(void**) {
   Scene scene;
   scene.target.position_m = forward_kinematics(lwa3(), home_rad()).tool_position;
-  const NominalCommand wish = scene.answer();
-  check_near(wish.velocity_radps, JointVector::Zero(7), 0);
-  check_near(wish.beta, 0.0, 0);
-  assert_false(wish.task_speed_limited);
+  const NominalCommand command = scene.nominal();
+  check_near(command.velocity_radps, JointVector::Zero(7), 0);
+  check_near(command.beta, 0.0, 0);
+  assert_false(command.task_speed_limited);
 }
 
-/// X = V + F T: the first cycle from rest toward a target 0.1 m away asks for k_pos * 0.1 * T.
+/// X = V + F T: in the first cycle from rest a target 0.1 m away gives k_pos * 0.1 * T.
 void force_becomes_velocity_over_one_period(void**) {
   Scene scene;
   scene.q_rad[0] = 0.3;
   const Vector3 tool_m = forward_kinematics(lwa3(), scene.q_rad).tool_position;
   scene.target.position_m = tool_m + Vector3(0, 0.1, 0);
-  check_near(scene.answer().tool_velocity_mps, Vector3(0, 20.0 * 0.1 * kPeriod_s, 0), 1e-12);
+  check_near(scene.nominal().tool_velocity_mps, Vector3(0, 20.0 * 0.1 * kPeriod_s, 0), 1e-12);
 }
 
 void planned_velocity_replaces_only_the_first_term(void**) {
@@ -163,9 +163,9 @@ void planned_velocity_replaces_only_the_first_term(void**) {
   scene.qd_radps = JointVector::Constant(7, 0.1);
   const Vector3 v_tool = tool_jacobian(forward_kinematics(lwa3(), home_rad()), 3) * scene.qd_radps;
   const Vector3 planned_mps(0.1, -0.2, 0.3);
-  const NominalCommand measured = scene.answer(&planned_mps);  // the gains say measured: planned is not used
+  const NominalCommand measured = scene.nominal(&planned_mps);  // tool_velocity is measured: planned_mps is not used
   scene.gains.tool_velocity = ToolVelocity::kPlanned;
-  const NominalCommand planned = scene.answer(&planned_mps), first = scene.answer(nullptr);
+  const NominalCommand planned = scene.nominal(&planned_mps), first = scene.nominal(nullptr);
   check_near(planned.tool_velocity_mps - planned_mps, measured.tool_velocity_mps - v_tool, 1e-12);
   check_near(first.tool_velocity_mps, measured.tool_velocity_mps, 0);
 }
@@ -174,26 +174,26 @@ void tool_speed_is_clipped_and_keeps_its_direction(void**) {
   Scene scene;
   const Vector3 tool_m = forward_kinematics(lwa3(), home_rad()).tool_position, away(2, 3, 6);
   scene.target.position_m = tool_m + 100 * away;
-  const NominalCommand wish = scene.answer();
-  assert_true(wish.task_speed_limited);
-  check_near(wish.tool_velocity_mps, Vector3(away.normalized() * scene.gains.v_max_mps), 1e-9);
+  const NominalCommand command = scene.nominal();
+  assert_true(command.task_speed_limited);
+  check_near(command.tool_velocity_mps, Vector3(away.normalized() * scene.gains.v_max_mps), 1e-9);
 }
 
-void answer_is_finite_where_formulas_are_nothing_over_nothing(void**) {
+void velocity_is_finite_where_the_formulas_are_zero_over_zero(void**) {
   const LinkPoses home = forward_kinematics(lwa3(), home_rad());
-  const Vector3 places[] = {home.tool_position, home.origin[3], home.origin[5],
-                            0.5 * (home.origin[5] + home.tool_position)};
-  for (const Vector3& place : places) {
+  const Vector3 centres[] = {home.tool_position, home.origin[3], home.origin[5],
+                             0.5 * (home.origin[5] + home.tool_position)};
+  for (const Vector3& centre : centres) {
     for (const bool with_orientation : {false, true}) {
       for (const Vector3& velocity : {Vector3(0, 0, 0), Vector3(0.3, 0, 0), Vector3(0, 0, -0.5)}) {
         Scene scene;
         scene.target.position_m = home.tool_position;
         scene.target.tracks_orientation = with_orientation;
-        scene.add_sphere(place, velocity);
-        const NominalCommand wish = scene.answer();
-        check(wish.velocity_radps.allFinite(), "obstacle at %g %g %g", place.x(), place.y(), place.z());
-        check(wish.velocity_radps.norm() < 20.0, "%g rad/s", wish.velocity_radps.norm());
-        check_near(wish.beta, 1.0, 0);
+        scene.add_sphere(centre, velocity);
+        const NominalCommand command = scene.nominal();
+        check(command.velocity_radps.allFinite(), "obstacle at %g %g %g", centre.x(), centre.y(), centre.z());
+        check(command.velocity_radps.norm() < 20.0, "%g rad/s", command.velocity_radps.norm());
+        check_near(command.beta, 1.0, 0);
       }
     }
   }
@@ -204,11 +204,11 @@ void answer_is_finite_where_formulas_are_nothing_over_nothing(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(law_agrees_with_the_numpy_program),
-      cmocka_unit_test(without_obstacles_and_errors_the_arm_rests),
+      cmocka_unit_test(at_the_target_without_obstacles_the_arm_rests),
       cmocka_unit_test(force_becomes_velocity_over_one_period),
       cmocka_unit_test(planned_velocity_replaces_only_the_first_term),
       cmocka_unit_test(tool_speed_is_clipped_and_keeps_its_direction),
-      cmocka_unit_test(answer_is_finite_where_formulas_are_nothing_over_nothing),
+      cmocka_unit_test(velocity_is_finite_where_the_formulas_are_zero_over_zero),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -36,15 +36,15 @@ void an_approaching_obstacle_pushes_along_its_relative_motion(void**) {
   check_near(repulsion(gains, Vector3(-0.1, 0, 0), kRest, kTool, Vector3(-3, -4, 0)), Vector3(0.3, 0.4, 0), 1e-12);
 }
 
-void nothing_is_felt_outside_the_reach(void**) {
+void an_obstacle_out_of_range_exerts_no_force(void**) {
   const PaperGains gains = gains_of(0.5, 0.1);
   const Vector3 toward(-1, 0, 0);
   check_near(repulsion(gains, Vector3(0.2501, 0, 0), toward, kTool, kRest), kRest, 0);
-  // Between the two reaches only the position counts: 0.5 (1/0.22 - 1/0.25).
+  // Between rho_v and rho_0 only the position counts: 0.5 (1/0.22 - 1/0.25).
   check_near(repulsion(gains, Vector3(0.22, 0, 0), toward, kTool, kRest), Vector3(-0.5 * (1 / 0.22 - 4), 0, 0), 1e-12);
 }
 
-void receding_and_equally_fast_obstacles_add_nothing(void**) {
+void obstacles_that_recede_or_move_with_the_tool_exert_no_velocity_force(void**) {
   Random random(1);
   const PaperGains gains = gains_of(0.0, 0.1);
   int receding = 0;
@@ -59,7 +59,7 @@ void receding_and_equally_fast_obstacles_add_nothing(void**) {
   check(receding > 300, "%d receding", receding);
 }
 
-void at_the_obstacles_centre_and_at_equal_speed_the_force_is_finite(void**) {
+void the_force_is_finite_at_the_obstacles_centre_and_at_equal_speed(void**) {
   const PaperGains gains;
   for (const double distance_m : {0.0, 1e-320, 1e-200, 1e-12, 1e-6}) {
     const Vector3 obstacle(distance_m, 0, 0);
@@ -71,26 +71,26 @@ void at_the_obstacles_centre_and_at_equal_speed_the_force_is_finite(void**) {
   }
 }
 
-void below_the_floor_the_force_grows_no_more(void**) {
+void below_the_least_distance_the_force_is_constant(void**) {
   const PaperGains gains = gains_of(0.5, 0.0);
   const double largest = 0.5 * (1 / 0.02 - 1 / 0.25);
   for (const double distance_m : {0.02, 0.01, 0.001, 1e-9})
     check_near(repulsion(gains, Vector3(distance_m, 0, 0), kRest, kTool, kRest), Vector3(-largest, 0, 0), 1e-9);
 }
 
-void the_push_fades_continuously_and_grows_with_nearness(void**) {
+void the_force_grows_continuously_as_the_distance_shrinks(void**) {
   const PaperGains gains = gains_of(0.5, 0.1);
   double last = 0.0;
   for (double distance_m = 0.26; distance_m > 0.02; distance_m -= 1e-4) {
     const double force = repulsion(gains, Vector3(distance_m, 0, 0), kRest, kTool, kRest).norm();
-    check(force >= last, "at %g m the force shrinks", distance_m);
+    check(force >= last, "at %g m the force decreases", distance_m);
     check(force - last < 0.5 * 1e-4 / (distance_m * distance_m) * 1.1, "at %g m the force jumps", distance_m);
     last = force;
   }
-  check(last > 20.0, "the sweep never came near: %g", last);
+  check(last > 20.0, "largest force %g", last);
 }
 
-void the_sum_counts_every_obstacle_where_it_is_now(void**) {
+void the_total_force_uses_every_obstacle_at_its_extrapolated_position(void**) {
   Random random(2);
   const PaperGains gains;
   const auto set = std::make_unique<ObstacleSet>();
@@ -127,12 +127,12 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_resting_obstacle_pushes_straight_away),
       cmocka_unit_test(an_approaching_obstacle_pushes_along_its_relative_motion),
-      cmocka_unit_test(nothing_is_felt_outside_the_reach),
-      cmocka_unit_test(receding_and_equally_fast_obstacles_add_nothing),
-      cmocka_unit_test(at_the_obstacles_centre_and_at_equal_speed_the_force_is_finite),
-      cmocka_unit_test(below_the_floor_the_force_grows_no_more),
-      cmocka_unit_test(the_push_fades_continuously_and_grows_with_nearness),
-      cmocka_unit_test(the_sum_counts_every_obstacle_where_it_is_now),
+      cmocka_unit_test(an_obstacle_out_of_range_exerts_no_force),
+      cmocka_unit_test(obstacles_that_recede_or_move_with_the_tool_exert_no_velocity_force),
+      cmocka_unit_test(the_force_is_finite_at_the_obstacles_centre_and_at_equal_speed),
+      cmocka_unit_test(below_the_least_distance_the_force_is_constant),
+      cmocka_unit_test(the_force_grows_continuously_as_the_distance_shrinks),
+      cmocka_unit_test(the_total_force_uses_every_obstacle_at_its_extrapolated_position),
       cmocka_unit_test(a_long_obstacle_pushes_from_its_nearest_point),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -26,14 +26,14 @@ PaperGains gains_of(double d_m, double d_1, double d_2) {
   return gains;
 }
 
-void priority_is_the_papers_equation_19(void**) {
+void priority_equals_equation_19(void**) {
   const PaperGains gains = gains_of(0.3, 0.3, 0.1);
   for (double d_0_m = 0.0; d_0_m < 0.4; d_0_m += 1e-3)
     check_near_because(task_priority(gains, d_0_m), printed_beta(d_0_m), 1e-12, "at %g", d_0_m);
   check_near(task_priority(gains, 0.2), 1 - M_SQRT1_2, 1e-12);
 }
 
-void priority_and_share_fall_continuously_from_one_to_nothing(void**) {
+void priority_and_share_fall_continuously_from_one_to_zero(void**) {
   for (const auto& [d_1, d_2] : {std::pair{0.3, 0.1}, {0.3, 0.0}, {0.5, 0.4}, {1.0, 0.05}}) {
     const PaperGains gains = gains_of(d_1, d_1, d_2);
     const double step_m = 1e-4;
@@ -51,12 +51,12 @@ void priority_and_share_fall_continuously_from_one_to_nothing(void**) {
   }
 }
 
-void share_is_the_papers_equation_17(void**) {
+void share_equals_equation_17(void**) {
   const PaperGains gains = gains_of(0.3, 0.3, 0.1);
   check_near(deviation_share(gains, 0.1), 0.5, 1e-12);  // 1 - sin(pi/6)
   check_near(deviation_share(gains, 0.15), 1 - M_SQRT1_2, 1e-12);
   check_near(deviation_share(gains, 10.0), 0.0, 0);
-  check(deviation_share(gains, -0.1) <= 1.0, "clamped below zero");
+  check(deviation_share(gains, -0.1) <= 1.0, "the share of a negative distance is not clamped");
 }
 
 Proximity near_forearm(const LinkPoses& poses, double distance_m) {
@@ -70,8 +70,8 @@ Proximity near_forearm(const LinkPoses& poses, double distance_m) {
   return nearest;
 }
 
-/// The deviation never disturbs the tool: it lives in the null space of the task.
-void deviation_leaves_the_tool_alone(void**) {
+/// The deviation lies in the null space of the task.
+void deviation_does_not_move_the_tool(void**) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
@@ -86,7 +86,7 @@ void deviation_leaves_the_tool_alone(void**) {
 }
 
 /// Term by term: beta A^T (A A^T + lambda_n^2 I)^-1 (alpha x_m n - J_0 q'_task), A = J_0 N.
-void deviation_is_the_second_term_of_equation_18(void**) {
+void deviation_equals_the_second_term_of_equation_18(void**) {
   PaperGains gains = gains_of(0.3, 0.3, 0.1);
   gains.x_m_mps = 0.5;
   gains.lambda_n = 0.05;
@@ -108,7 +108,7 @@ void deviation_is_the_second_term_of_equation_18(void**) {
   assert_true(expected.norm() > 0.05);
 }
 
-void at_home_with_a_pose_task_nothing_can_evade_and_nothing_blows_up(void**) {
+void at_home_with_a_pose_task_the_deviation_is_zero(void**) {
   const LinkPoses poses = forward_kinematics(lwa3(), home_rad());
   const TaskInverse inverse = invert(PaperGains(), tool_jacobian(poses, 6));
   const JointVector deviation =
@@ -128,12 +128,12 @@ void a_far_obstacle_causes_no_deviation(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(priority_is_the_papers_equation_19),
-      cmocka_unit_test(priority_and_share_fall_continuously_from_one_to_nothing),
-      cmocka_unit_test(share_is_the_papers_equation_17),
-      cmocka_unit_test(deviation_leaves_the_tool_alone),
-      cmocka_unit_test(deviation_is_the_second_term_of_equation_18),
-      cmocka_unit_test(at_home_with_a_pose_task_nothing_can_evade_and_nothing_blows_up),
+      cmocka_unit_test(priority_equals_equation_19),
+      cmocka_unit_test(priority_and_share_fall_continuously_from_one_to_zero),
+      cmocka_unit_test(share_equals_equation_17),
+      cmocka_unit_test(deviation_does_not_move_the_tool),
+      cmocka_unit_test(deviation_equals_the_second_term_of_equation_18),
+      cmocka_unit_test(at_home_with_a_pose_task_the_deviation_is_zero),
       cmocka_unit_test(a_far_obstacle_causes_no_deviation),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

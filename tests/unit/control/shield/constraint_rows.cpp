@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kStep_rad = 1e-6;
 constexpr double kTolerance = 1e-6;
-constexpr double kKink_m = 0.01;  // nearer than this to each other axes bend the distance too much to differentiate
+constexpr double kKink_m = 0.01;  // for axes nearer than this the distance is too curved to differentiate
 
 using Pairs = std::vector<std::pair<int, int>>;
 
@@ -29,7 +29,7 @@ VelocityRange range_of(double radps) {
   return {JointVector::Constant(7, -radps), JointVector::Constant(7, radps)};
 }
 
-/// Everything that is said of the rows of one posture among obstacles.
+/// A configuration among obstacles, and its constraint rows.
 struct Scene {
   JointVector q_rad, last_radps = JointVector::Zero(7);
   LinkPoses poses;
@@ -57,8 +57,8 @@ struct Scene {
   }
 };
 
-/// As slow as the gain says, and slow enough to brake within the room with half of what the joints have, after one more
-/// period at that speed.
+/// Bound of a hard row. The closing speed is at most the gain times the room, and low enough to brake within the room
+/// at half of the joints' acceleration after one more period.
 double hard_bound(const JointVector& row, double room_m) {
   const double by_gain_mps = kSettings.hard_gain_per_s * room_m;
   if (room_m <= 0.0) return std::min(3.0, -by_gain_mps);
@@ -66,13 +66,14 @@ double hard_bound(const JointVector& row, double room_m) {
   return -std::min(by_gain_mps, -b * period_s + std::sqrt(b * b * period_s * period_s + 2.0 * b * room_m));
 }
 
-/// A link that turns about its own axis, say, cannot change the distance at all; such a row is left out if met.
-bool can_matter(const JointVector& by_joint) {
+/// False where no joint changes the distance, as for a link that turns about its own axis. Such a row is skipped if it
+/// is met.
+bool joints_matter(const JointVector& by_joint) {
   return by_joint.norm() > 1e-6;
 }
 
 /// Derivative of a distance by the joints, by central differences.
-JointVector slope(const JointVector& q_rad, const std::function<double(const LinkPoses&)>& distance_m) {
+JointVector gradient(const JointVector& q_rad, const std::function<double(const LinkPoses&)>& distance_m) {
   JointVector by_joint(q_rad.size());
   for (int i = 0; i < q_rad.size(); ++i) {
     JointVector more = q_rad, less = q_rad;
@@ -88,16 +89,16 @@ const LinkShape& shape_of(int index) {
   return lwa3().shapes[static_cast<size_t>(index)];
 }
 
-Obstacle any_shape(const Vector3& centre, Random& random) {
+Obstacle random_shape(const Vector3& centre, Random& random) {
   const Matrix3 rotation = random.turn().toRotationMatrix();
   if (random.chance(0.4)) return sphere_obstacle(centre, random.uniform(0, 0.15));
   if (random.chance(0.5)) return capsule_obstacle(centre, rotation, random.uniform(0, 0.15), random.uniform(0, 0.6));
   return box_obstacle(centre, rotation, random.inside(0.01, 0.5));
 }
 
-/// An obstacle from deep in the link to the end of the range, at rest or not.
-Obstacle any_obstacle(const Capsule& link, Random& random) {
-  Obstacle obstacle = any_shape(
+/// A random obstacle, at rest or moving, from deep inside the link to the end of the range.
+Obstacle random_obstacle(const Capsule& link, Random& random) {
+  Obstacle obstacle = random_shape(
       link.start + random.uniform(0, 1) * (link.end - link.start) + random.direction() * random.uniform(0, 0.4),
       random);
   if (random.chance(0.7)) obstacle.velocity_mps = random.inside(-1, 1);
@@ -121,7 +122,7 @@ int moving_shape(Random& random) {
 }
 
 void check_distance_rows(Scene& scene, const NearPair& pair, const Obstacle& obstacle, int trial, int (&seen)[2]) {
-  const JointVector expected = slope(scene.q_rad, [&](const LinkPoses& poses) {
+  const JointVector expected = gradient(scene.q_rad, [&](const LinkPoses& poses) {
     return measure_pair(transformed(poses, shape_of(pair.now.shape)), obstacle).distance_m;
   });
   const ConstraintRows rows = scene.rows_of(pair);
@@ -132,13 +133,13 @@ void check_distance_rows(Scene& scene, const NearPair& pair, const Obstacle& obs
   }
 }
 
-void rows_of_distances_are_their_slopes(void**) {
+void distance_rows_are_the_gradients_of_the_distances(void**) {
   Random random(1);
   int seen[2] = {}, inside = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     Scene scene(random.poses(lwa3()));
     const int shape = moving_shape(random);
-    const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     scene.add(obstacle);
     const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
     if (std::abs(pair.now.axis_distance_m) < kKink_m || pair.now.distance_m > kSettings.range_m) continue;
@@ -148,13 +149,13 @@ void rows_of_distances_are_their_slopes(void**) {
   check(seen[0] > 2000 && seen[1] > 2000 && inside > 300, "%d hard, %d comfort, %d inside", seen[0], seen[1], inside);
 }
 
-/// d' >= -gain (d - clearance), for an obstacle that stays where it is; never a demand that no arm can meet.
-void the_bounds_of_distances_are_barriers(void**) {
+/// d' >= -gain (d - clearance) for an obstacle at rest, limited to a speed that an arm can reach.
+void the_bounds_of_distance_rows_are_barriers(void**) {
   Random random(2);
   for (int trial = 0; trial < 500; ++trial) {
     Scene scene(random.poses(lwa3()));
     const int shape = moving_shape(random);
-    Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     obstacle.velocity_mps.setZero();
     scene.add(obstacle);
     const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
@@ -165,49 +166,50 @@ void the_bounds_of_distances_are_barriers(void**) {
       continue;
     }
     const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
-    if (!can_matter(jacobian.transpose() * pair.now.normal)) continue;
+    if (!joints_matter(jacobian.transpose() * pair.now.normal)) continue;
     assert_int_equal(rows.size(), 2);
     check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
     check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
   }
 }
 
-/// A link that runs away before an obstacle that comes at it keeps its distance; one that is left alone need not.
-void an_obstacle_that_comes_asks_for_more_than_one_that_leaves(void**) {
+/// The bound grows with the velocity of the obstacle toward the link.
+void an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it(void**) {
   Random random(3);
   for (int trial = 0; trial < 500; ++trial) {
     const JointVector q_rad = random.poses(lwa3());
     const int shape = moving_shape(random);
-    Obstacle obstacle = any_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
+    Obstacle obstacle = random_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
     const Proximity now = measure_pair(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), obstacle);
     if (now.distance_m > kSettings.range_m) continue;
     double bounds[3];
-    for (int way = -1; way <= 1; ++way) {
+    for (int sign = -1; sign <= 1; ++sign) {
       Scene scene(q_rad);
-      obstacle.velocity_mps = 0.3 * way * now.normal;
+      obstacle.velocity_mps = 0.3 * sign * now.normal;
       scene.add(obstacle);
       const ConstraintRows rows = scene.rows_of(pair_of(scene.poses, shape, 0, obstacle), true);
-      bounds[way + 1] = rows.size() > 0 ? rows[0].bound : -std::numeric_limits<double>::infinity();  // met anyway
+      bounds[sign + 1] =
+          rows.size() > 0 ? rows[0].bound : -std::numeric_limits<double>::infinity();  // met by every velocity
     }
     check(bounds[0] <= bounds[1] && bounds[1] <= bounds[2], "trial %d: %g, %g, %g", trial, bounds[0], bounds[1],
           bounds[2]);
   }
 }
 
-/// The path is that of the obstacle's point that is nearest now, which therefore stays what it is.
-void rows_of_ways_are_the_slopes_of_the_closest_approach(void**) {
+/// The closest approach is that of the obstacle's nearest point now, which `point` represents.
+void pass_rows_are_the_gradients_of_the_closest_approach(void**) {
   Random random(4);
   int seen = 0;
   for (int trial = 0; trial < 4500; ++trial) {
     Scene scene(random.poses(lwa3()));
     const int shape = moving_shape(random);
-    const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     scene.add(obstacle);
     const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
     if (obstacle.is_box() || pair.approach.head_on || pair.approach.axis_distance_m < kKink_m) continue;
     Obstacle point = sphere_obstacle(pair.now.on_obstacle, obstacle.capsule.radius_m);
     point.velocity_mps = obstacle.velocity_mps;
-    const JointVector expected = slope(scene.q_rad, [&](const LinkPoses& poses) {
+    const JointVector expected = gradient(scene.q_rad, [&](const LinkPoses& poses) {
       const Capsule link = transformed(poses, shape_of(shape));
       return predict_closest_approach(link, point, measure_pair(link, point), kSettings.pass_horizon_s).distance_m;
     });
@@ -221,22 +223,22 @@ void rows_of_ways_are_the_slopes_of_the_closest_approach(void**) {
   check(seen > 800, "only %d", seen);
 }
 
-/// What comes nearer by turning alone asks for as much as what comes straight at that speed.
-void an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point(void**) {
+/// An obstacle that only turns gives the same bounds as one that translates with the velocity of that point.
+void a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point(void**) {
   Random random(7);
   int seen = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     const JointVector q_rad = random.poses(lwa3());
     const int shape = moving_shape(random);
-    Obstacle turning = any_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
+    Obstacle turning = random_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
     turning.velocity_mps.setZero();
     turning.angular_velocity_radps = random.inside(-2, 2);
     Scene scene(q_rad);
     const NearPair pair = pair_of(scene.poses, shape, 0, turning);
-    Obstacle straight = turning;
-    straight.velocity_mps = pair.velocity_mps;
-    straight.angular_velocity_radps.setZero();
-    const ConstraintRows rows = scene.rows_of(pair), same = scene.rows_of(pair_of(scene.poses, shape, 0, straight));
+    Obstacle translating = turning;
+    translating.velocity_mps = pair.velocity_mps;
+    translating.angular_velocity_radps.setZero();
+    const ConstraintRows rows = scene.rows_of(pair), same = scene.rows_of(pair_of(scene.poses, shape, 0, translating));
     assert_int_equal(rows.size(), same.size());
     for (int i = 0; i < rows.size(); ++i) check_near_because(rows[i].bound, same[i].bound, 1e-9, "trial %d", trial);
     seen += rows.size() > 0 && std::abs(pair.velocity_mps.dot(pair.now.normal)) > 0.01;
@@ -244,7 +246,7 @@ void an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point(void**)
   check(seen > 100, "only %d", seen);
 }
 
-void rows_of_links_against_each_other_are_their_slopes(void**) {
+void rows_of_self_pairs_are_the_gradients_of_their_distances(void**) {
   const Pairs pairs = find_self_pairs(lwa3());
   Random random(5);
   int seen = 0;
@@ -259,8 +261,8 @@ void rows_of_links_against_each_other_are_their_slopes(void**) {
       scene.self_pairs = {{a, b}};
       const ConstraintRows rows = scene.rows(range_of(1e9));
       const JointVector expected =
-          slope(scene.q_rad, [&](const LinkPoses& poses) { return distance(poses).distance_m; });
-      if (!can_matter(expected)) continue;
+          gradient(scene.q_rad, [&](const LinkPoses& poses) { return distance(poses).distance_m; });
+      if (!joints_matter(expected)) continue;
       assert_int_equal(rows.size(), 1);
       check_near_because(rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
       check_near(rows[0].bound, hard_bound(rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
@@ -280,7 +282,7 @@ bool same(const ConstraintRow& a, const ConstraintRow& b) {
   return a.row == b.row && a.bound == b.bound && a.tier == b.tier && a.other_bound == b.other_bound;
 }
 
-/// All rows of all pairs, however many they are.
+/// All rows of all pairs, without the limit on their number.
 std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& near) {
   std::vector<ConstraintRow> all;
   for (const NearPair& pair : near)
@@ -288,24 +290,25 @@ std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& n
   return all;
 }
 
-/// Those that some velocity in the range does not meet; of too many the most pressing. Says whether they were too many.
+/// Checks that the rows kept are those that some velocity in the range does not meet; of too many, the most urgent.
+/// Returns whether they are too many.
 bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kept, const VelocityRange& range,
                 int trial) {
-  std::vector<ConstraintRow> mattering;
+  std::vector<ConstraintRow> relevant;
   for (const ConstraintRow& row : all)
-    if (worst_shortfall(row, range) > 0.0) mattering.push_back(row);
-  assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(mattering.size())));
-  double least_kept = 1e9, most_left_out = 0.0;
-  for (const ConstraintRow& row : mattering) {
+    if (worst_shortfall(row, range) > 0.0) relevant.push_back(row);
+  assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(relevant.size())));
+  double least_kept = 1e9, most_skipped = 0.0;
+  for (const ConstraintRow& row : relevant) {
     const bool is_kept =
         std::any_of(kept.begin(), kept.end(), [&](const ConstraintRow& one) { return same(one, row); });
     if (is_kept)
       least_kept = std::min(least_kept, worst_shortfall(row, range));
     else
-      most_left_out = std::max(most_left_out, worst_shortfall(row, range));
+      most_skipped = std::max(most_skipped, worst_shortfall(row, range));
   }
-  check(most_left_out <= least_kept + 1e-12, "trial %d: left out %g, kept %g", trial, most_left_out, least_kept);
-  return mattering.size() > kMaxRows;
+  check(most_skipped <= least_kept + 1e-12, "trial %d: skipped %g, kept %g", trial, most_skipped, least_kept);
+  return relevant.size() > kMaxRows;
 }
 
 VelocityRange random_range(Random& random, double largest_radps) {
@@ -313,7 +316,7 @@ VelocityRange random_range(Random& random, double largest_radps) {
   return {middle - random.joints(7, 0, 0.5), middle + random.joints(7, 0, 0.5)};
 }
 
-void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(void**) {
+void only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped(void**) {
   Random random(6);
   int crowded = 0;
   for (int trial = 0; trial < 300; ++trial) {
@@ -322,7 +325,7 @@ void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(voi
     std::vector<NearPair> near;
     for (int i = random.index(kMaxNear + 1); i > 0; --i) {
       const int shape = moving_shape(random);
-      const Obstacle obstacle = any_obstacle(transformed(scene.poses, shape_of(shape)), random);
+      const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
       scene.add(obstacle);
       near.push_back(pair_of(scene.poses, shape, scene.set->count - 1, obstacle));
     }
@@ -332,7 +335,7 @@ void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(voi
                  [](const ConstraintRow& row) { return row.tier == Tier::kHard; });
     scene.clearance.near.clear();
     for (const NearPair& pair : near) scene.clearance.near.add(pair);
-    // The velocities of the step may be among those that last, or others: a joint that is too fast for its limit.
+    // The range of the step may lie partly outside the sustainable range: a joint may be too fast for its limit.
     const VelocityRange sustainable = random_range(random, 2.0),
                         within{0.5 * sustainable.lower_radps + 0.5 * sustainable.upper_radps, sustainable.upper_radps};
     const VelocityRange range = random.chance(0.5) ? within : random_range(random, 2.0);
@@ -347,13 +350,13 @@ void only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing(voi
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(rows_of_distances_are_their_slopes),
-      cmocka_unit_test(the_bounds_of_distances_are_barriers),
-      cmocka_unit_test(an_obstacle_that_comes_asks_for_more_than_one_that_leaves),
-      cmocka_unit_test(rows_of_ways_are_the_slopes_of_the_closest_approach),
-      cmocka_unit_test(an_obstacle_that_turns_comes_with_the_velocity_of_its_nearest_point),
-      cmocka_unit_test(rows_of_links_against_each_other_are_their_slopes),
-      cmocka_unit_test(only_rows_that_every_velocity_meets_are_left_out_and_the_least_pressing),
+      cmocka_unit_test(distance_rows_are_the_gradients_of_the_distances),
+      cmocka_unit_test(the_bounds_of_distance_rows_are_barriers),
+      cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
+      cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
+      cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),
+      cmocka_unit_test(rows_of_self_pairs_are_the_gradients_of_their_distances),
+      cmocka_unit_test(only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -22,13 +22,13 @@ const Model& model() {
   return lwa3;
 }
 
-/// How many random states: 20 000, or what the environment asks for.
+/// Number of random states: 20 000, or the environment variable SHIELD_STATES.
 long states() {
-  const char* asked = std::getenv("SHIELD_STATES");
-  return asked ? std::atol(asked) : 20000;
+  const char* text = std::getenv("SHIELD_STATES");
+  return text ? std::atol(text) : 20000;
 }
 
-/// All that one call of the shield needs, kept together.
+/// The inputs of one call of the shield.
 struct Scene {
   JointVector q_rad = JointVector::Zero(7), last_radps = JointVector::Zero(7), nominal_radps = JointVector::Zero(7);
   ObstacleSet& set;  // large
@@ -48,24 +48,23 @@ struct Scene {
     sustainable = sustainable_range(model().arm.limits, q_rad, q_rad, kPeriod_s);
     range = velocity_range(model().arm.limits, q_rad, q_rad, last_radps, kPeriod_s);
   }
-  ShieldInput around() const {
+  ShieldInput input() const {
     return {model().arm,        poses,         q_rad,     last_radps,    clearance, view,
             model().self_pairs, evasion_radps, kPeriod_s, comfort_weight};
   }
-  Shielded ask() const {
-    return shield(model().settings.shield, around(), sustainable, range, tool_jacobian(poses, task_rows),
-                  nominal_radps);
+  Shielded shielded() const {
+    return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);
   }
-  ConstraintRows hard_rows() const { return make_rows(model().settings.shield, around(), sustainable, range).step; }
+  ConstraintRows hard_rows() const { return make_rows(model().settings.shield, input(), sustainable, range).step; }
 
   void add(const Capsule& capsule, const Vector3& velocity_mps = Vector3::Zero()) {
     set.obstacles[static_cast<size_t>(set.count)] = {set.count, capsule, velocity_mps, Vector3::Zero()};
     ++set.count;
   }
-  /// One period of an arm that does as it is told among obstacles that go on.
+  /// One period: the arm moves at the shield's velocity, the obstacles at theirs.
   Shielded cycle() {
     measure();
-    const Shielded given = ask();
+    const Shielded given = shielded();
     q_rad += kPeriod_s * given.velocity_radps;
     last_radps = given.velocity_radps;
     evasion_radps = given.plan.evading ? given.plan.velocity_radps : JointVector();
@@ -75,7 +74,7 @@ struct Scene {
     }
     return given;
   }
-  /// Of the links that can move.
+  /// Least distance of the links that can move.
   double distance_m() {
     measure();
     double least_m = std::numeric_limits<double>::infinity();
@@ -99,7 +98,7 @@ Vector3 on_the_arm(const LinkPoses& poses, Random& random) {
   return link.start + random.uniform(0, 1) * (link.end - link.start);
 }
 
-JointVector extreme_posture(Random& random) {
+JointVector extreme_configuration(Random& random) {
   const JointLimits& limits = model().arm.limits;
   JointVector q_rad = random.poses(model().arm);
   if (random.chance(0.1)) q_rad = test::home_rad();
@@ -112,7 +111,7 @@ JointVector extreme_posture(Random& random) {
   return q_rad;
 }
 
-/// Few obstacles most of the time, now and then more than there is room for; from deep in the arm to out of reach.
+/// Places a few obstacles most of the time and up to 64 sometimes, from deep inside the arm to out of its reach.
 void surround(Scene& scene, const LinkPoses& poses, Random& random) {
   scene.set.count = 0;
   const int count = random.chance(0.02) ? random.index(65) : random.index(3);
@@ -128,7 +127,7 @@ void surround(Scene& scene, const LinkPoses& poses, Random& random) {
 }
 
 void randomise(Scene& scene, Random& random) {
-  scene.q_rad = extreme_posture(random);
+  scene.q_rad = extreme_configuration(random);
   surround(scene, forward_kinematics(model().arm, scene.q_rad), random);
   scene.last_radps = random.joints(7, -2, 2) * (random.chance(0.3) ? 0.0 : 1.0);
   scene.nominal_radps = random.joints(7, -1, 1) * std::pow(10.0, random.uniform(-2, 3));
@@ -145,28 +144,28 @@ bool within(const VelocityRange& range, const JointVector& velocity_radps) {
          (velocity_radps.array() <= range.upper_radps.array()).all();
 }
 
-/// By how much a velocity misses the worst hard row; 0 when it meets all.
-double worst_miss(const ConstraintRows& rows, const JointVector& velocity_radps, int* which = nullptr) {
+/// Shortfall of a velocity in the worst hard row, m/s; 0 when it meets all rows.
+double worst_shortfall(const ConstraintRows& rows, const JointVector& velocity_radps, int* which = nullptr) {
   double worst = 0.0;
   for (int i = 0; i < rows.size(); ++i) {
     const ConstraintRow& row = rows[i];
-    const double miss = row.bound - row.row.dot(velocity_radps);
-    if (miss <= worst) continue;
-    worst = miss;
+    const double shortfall = row.bound - row.row.dot(velocity_radps);
+    if (shortfall <= worst) continue;
+    worst = shortfall;
     if (which) *which = i;
   }
   return worst;
 }
 
-/// The least worst miss that a search knows of: random velocities and corners, then steps against the worst row.
-double least_miss(const ConstraintRows& rows, const VelocityRange& range, Random& random) {
+/// Least such shortfall found by a search: the corners of the range, random velocities, then steps along the worst row.
+double least_shortfall(const ConstraintRows& rows, const VelocityRange& range, Random& random) {
   const JointVector span = range.upper_radps - range.lower_radps;
   JointVector best_radps = range.lower_radps;
-  double best = worst_miss(rows, best_radps);
+  double best = worst_shortfall(rows, best_radps);
   const auto consider = [&](const JointVector& velocity_radps) {
-    const double miss = worst_miss(rows, velocity_radps);
-    if (miss >= best) return;
-    best = miss;
+    const double shortfall = worst_shortfall(rows, velocity_radps);
+    if (shortfall >= best) return;
+    best = shortfall;
     best_radps = velocity_radps;
   };
   for (int corner = 0; corner < 128; ++corner) {
@@ -179,7 +178,7 @@ double least_miss(const ConstraintRows& rows, const VelocityRange& range, Random
   JointVector velocity_radps = best_radps;
   for (int i = 0; i < 300; ++i) {
     int worst = -1;
-    worst_miss(rows, velocity_radps, &worst);
+    worst_shortfall(rows, velocity_radps, &worst);
     if (worst < 0) return 0.0;
     const JointVector& row = rows[worst].row;
     const double step = span.norm() / (1.0 + i);
@@ -190,30 +189,31 @@ double least_miss(const ConstraintRows& rows, const VelocityRange& range, Random
   return best;
 }
 
-// What the hard tier may yield to the wish: its weight is large, not infinite.
-constexpr double kYield_mps = 5e-3;
+// Shortfall that the hard tier may have in favour of the nominal velocity: its weight is large, not infinite.
+constexpr double kShortfall_mps = 5e-3;
 
-void check_least_loss(const Scene& scene, const Shielded& given, Random& random, long trial) {
+void check_least_slack(const Scene& scene, const Shielded& given, Random& random, long trial) {
   const ConstraintRows rows = scene.hard_rows();
-  const double miss_mps = worst_miss(rows, given.velocity_radps);
-  check(miss_mps <= given.hard_slack_mps + kYield_mps, "state %ld: loses %g m/s, says %g", trial, miss_mps,
-        given.hard_slack_mps);
-  const double least_mps = least_miss(rows, scene.range, random);
-  check(miss_mps <= least_mps + kYield_mps, "state %ld: loses %g m/s where %g would do", trial, miss_mps, least_mps);
+  const double shortfall_mps = worst_shortfall(rows, given.velocity_radps);
+  check(shortfall_mps <= given.hard_slack_mps + kShortfall_mps, "state %ld: shortfall %g m/s, %g reported", trial,
+        shortfall_mps, given.hard_slack_mps);
+  const double least_mps = least_shortfall(rows, scene.range, random);
+  check(shortfall_mps <= least_mps + kShortfall_mps, "state %ld: shortfall %g m/s where %g is possible", trial,
+        shortfall_mps, least_mps);
 }
 
-/// Of one call. One that seems long is asked again: a shared machine slows things down now and then.
+/// CPU time of one call. A long one is repeated, since other load on the machine may have caused it.
 double cpu_time_s(const Scene& scene, Shielded& given) {
   double least_s = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < 3 && least_s > 0.2 * kPeriod_s; ++attempt) {
     const std::clock_t start = std::clock();
-    given = scene.ask();
+    given = scene.shielded();
     least_s = std::min(least_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   return least_s;
 }
 
-void whatever_the_state_the_velocity_is_within_range_and_soon_there(void**) {
+void in_any_state_the_velocity_is_within_range_and_computed_within_a_period(void**) {
   Random random(1);
   Scene scene{{}, {}, {}, empty_set()};
   double longest_s = 0.0, sum_s = 0.0;
@@ -225,62 +225,62 @@ void whatever_the_state_the_velocity_is_within_range_and_soon_there(void**) {
     sum_s += took_s;
     check(within(scene.range, given.velocity_radps), "state %ld: %g rad/s", trial,
           given.velocity_radps.cwiseAbs().maxCoeff());
-    check(std::isfinite(given.hard_slack_mps) && given.hard_slack_mps >= 0.0, "state %ld: loss %g", trial,
+    check(std::isfinite(given.hard_slack_mps) && given.hard_slack_mps >= 0.0, "state %ld: slack %g", trial,
           given.hard_slack_mps);
   }
   print_message("shield: %.1f us in the mean, %.1f us at most (CPU)\n", 1e6 * sum_s / static_cast<double>(states()),
                 1e6 * longest_s);
-  const bool untimed = std::getenv("UNTIMED") != nullptr;  // CPU times mean nothing
+  const bool untimed = std::getenv("UNTIMED") != nullptr;  // for builds whose CPU times are meaningless
   check(untimed || longest_s < kPeriod_s, "%g s", longest_s);
 }
 
-void the_worst_pair_loses_the_least_that_is_possible(void**) {
+void the_worst_hard_row_has_the_least_possible_slack(void**) {
   Random random(2);
   Scene scene{{}, {}, {}, empty_set()};
-  int lost = 0;
+  int has_slack = 0;
   for (long trial = 0; trial < states() / 40; ++trial) {
     randomise(scene, random);
-    const Shielded given = scene.ask();
-    check_least_loss(scene, given, random, trial);
-    if (given.hard_slack_mps > 0.01) ++lost;
+    const Shielded given = scene.shielded();
+    check_least_slack(scene, given, random, trial);
+    if (given.hard_slack_mps > 0.01) ++has_slack;
   }
-  check(lost > states() / 400, "only %d states are hard", lost);
+  check(has_slack > states() / 400, "only %d states with slack", has_slack);
 }
 
-void with_nothing_near_a_wish_within_range_is_granted_exactly(void**) {
+void without_obstacles_a_nominal_velocity_within_range_is_unchanged(void**) {
   Random random(3);
   Scene scene{{}, {}, {}, empty_set()};
-  int granted = 0;
+  int unchanged = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     randomise(scene, random);
     scene.set.count = 0;
     scene.measure();
-    if (scene.hard_rows().size() > 0) continue;  // the arm is near itself
+    if (scene.hard_rows().size() > 0) continue;  // two links are close to each other
     for (int i = 0; i < 7; ++i)
       scene.nominal_radps[i] = random.uniform(std::max(scene.sustainable.lower_radps[i], scene.range.lower_radps[i]),
                                               std::min(scene.sustainable.upper_radps[i], scene.range.upper_radps[i]));
     if (!within(scene.range, scene.nominal_radps) || !within(scene.sustainable, scene.nominal_radps)) continue;
     const ConstraintRows rows =
-        make_rows(model().settings.shield, scene.around(), scene.sustainable, scene.sustainable).step;
-    if (worst_miss(rows, scene.nominal_radps) > 0.0) continue;
-    const Shielded given = scene.ask();
+        make_rows(model().settings.shield, scene.input(), scene.sustainable, scene.sustainable).step;
+    if (worst_shortfall(rows, scene.nominal_radps) > 0.0) continue;
+    const Shielded given = scene.shielded();
     check_near_because(given.velocity_radps, scene.nominal_radps, 0.0, "state %d", trial);
     check_near(given.hard_slack_mps, 0.0, 0.0);
-    ++granted;
+    ++unchanged;
   }
-  check(granted > 300, "only %d", granted);
+  check(unchanged > 300, "only %d", unchanged);
 }
 
-/// How the joints change the distance of a link to the first obstacle, m.
-JointVector opening(const Scene& scene, int shape) {
+/// Gradient of a link's distance to the first obstacle by the joints, m/rad.
+JointVector distance_gradient(const Scene& scene, int shape) {
   const LinkShape& link = model().arm.shapes[static_cast<size_t>(shape)];
   const Proximity pair = measure_pair(transformed(scene.poses, link), scene.set.obstacles[0].capsule);
   return point_jacobian(scene.poses, link.body, pair.on_arm).transpose() * pair.normal;
 }
 
-/// The wish that drives a link as fast as it can at the first obstacle.
-JointVector straight_at_it(const Scene& scene, int shape) {
-  const JointVector row = opening(scene, shape);
+/// The nominal velocity that moves a link toward the first obstacle as fast as possible.
+JointVector toward_the_obstacle(const Scene& scene, int shape) {
+  const JointVector row = distance_gradient(scene, shape);
   return -row * (2.0 / std::max(1e-6, row.cwiseAbs().maxCoeff()));
 }
 
@@ -291,7 +291,7 @@ int moving_shape(Random& random) {
   return shape;
 }
 
-void an_arm_driven_at_a_static_obstacle_stops_before_it(void**) {
+void an_arm_driven_toward_a_static_obstacle_stops_before_it(void**) {
   const double clearance_m = model().settings.shield.hard_clearance_m;
   Random random(4);
   int stopped = 0;
@@ -306,7 +306,7 @@ void an_arm_driven_at_a_static_obstacle_stops_before_it(void**) {
     scene.comfort_weight = model().settings.shield.comfort_least_weight;
     double least_m = 1.0;
     for (int cycle = 0; cycle < 500; ++cycle) {
-      scene.nominal_radps = straight_at_it(scene, shape);
+      scene.nominal_radps = toward_the_obstacle(scene, shape);
       scene.cycle();
       least_m = std::min(least_m, scene.distance_m());
       check(least_m >= clearance_m - 5e-3, "trial %d, cycle %d: %g m", trial, cycle, least_m);
@@ -316,7 +316,7 @@ void an_arm_driven_at_a_static_obstacle_stops_before_it(void**) {
   check(stopped >= 10, "only %d came near", stopped);
 }
 
-void an_arm_in_contact_only_opens_the_distance(void**) {
+void in_contact_the_distance_only_grows(void**) {
   Random random(5);
   int freed = 0, trials = 0;
   for (int trial = 0; trial < 40; ++trial) {
@@ -329,13 +329,13 @@ void an_arm_in_contact_only_opens_the_distance(void**) {
     ++trials;
     const int shape = moving_shape(random);
     for (int cycle = 0; cycle < 200; ++cycle) {
-      scene.nominal_radps = straight_at_it(scene, shape);
+      scene.nominal_radps = toward_the_obstacle(scene, shape);
       scene.cycle();
       const double before_m = distance_m;
       distance_m = scene.distance_m();
-      const double at_rest_m = 0.02 - 1e-3;  // opened; from here on it may give way again
-      // Where the link hardly moves at all, next to the shoulder, there is no way out.
-      if (opening(scene, scene.clearance.nearest.shape).norm() < 0.02) break;
+      const double at_rest_m = 0.02 - 1e-3;  // near the hard clearance the distance may shrink again
+      // A link next to the shoulder hardly moves and cannot get out of contact.
+      if (distance_gradient(scene, scene.clearance.nearest.shape).norm() < 0.02) break;
       check(distance_m >= std::min(before_m, at_rest_m) - 1e-4, "trial %d, cycle %d: from %g to %g m", trial, cycle,
             before_m, distance_m);
     }
@@ -344,10 +344,10 @@ void an_arm_in_contact_only_opens_the_distance(void**) {
   check(trials >= 20 && freed >= 0.8 * trials, "%d of %d", freed, trials);
 }
 
-/// A sphere that presses a link against another that does not give way.
-void an_arm_between_two_obstacles_gives_way_where_it_can(void**) {
+/// One sphere moves toward a link, and another one rests on its other side.
+void between_two_obstacles_the_slack_is_the_least_possible(void**) {
   Random random(6);
-  int squeezed = 0;
+  int with_slack = 0;
   for (int trial = 0; trial < 20; ++trial) {
     Scene scene{random.poses(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
     scene.measure();
@@ -356,21 +356,21 @@ void an_arm_between_two_obstacles_gives_way_where_it_can(void**) {
     const Vector3 wall = middle - side * (radius_m + 0.08), start = middle + side * (radius_m + 0.15);
     scene.add({wall, wall, radius_m});
     scene.add({start, start, radius_m}, -side * speed_mps);
-    bool lost = false;
+    bool has_slack = false;
     for (int cycle = 0; cycle < 100; ++cycle) {
       scene.nominal_radps = random.joints(7, -1, 1);
       const Shielded given = scene.cycle();
-      lost = lost || given.hard_slack_mps > 0.01;
+      has_slack = has_slack || given.hard_slack_mps > 0.01;
       if (cycle % 5) continue;
       scene.measure();
-      check_least_loss(scene, scene.ask(), random, trial * 1000 + cycle);
+      check_least_slack(scene, scene.shielded(), random, trial * 1000 + cycle);
     }
-    if (lost) ++squeezed;
+    if (has_slack) ++with_slack;
   }
-  check(squeezed > 5, "only %d", squeezed);
+  check(with_slack > 5, "only %d", with_slack);
 }
 
-/// A state from which the joints can still stop, and an arm that nearly is where it was told to be.
+/// A state from which the joints can stop within their limits, with the arm close to the commanded position.
 State reachable_state(Random& random, const JointVector& measured_rad, double now_s) {
   State state;
   state.supervision = {random.chance(0.8) ? Mode::kTrack : Mode::kHold, Fault::kNone, ""};
@@ -389,7 +389,7 @@ State reachable_state(Random& random, const JointVector& measured_rad, double no
   return state;
 }
 
-Target any_target(Random& random) {
+Target random_target(Random& random) {
   Target target;
   target.position_m = random.inside(-1, 1) + Vector3(0, 0, 0.6);
   target.velocity_mps = random.inside(-1, 1) * (random.chance(0.5) ? 0.0 : std::pow(10.0, random.uniform(-2, 1)));
@@ -399,14 +399,14 @@ Target any_target(Random& random) {
   return target;
 }
 
-void whatever_the_state_every_command_of_a_cycle_can_be_followed(void**) {
+void in_any_state_the_arm_can_follow_the_command_of_a_cycle(void**) {
   Random random(7);
   Scene scene{{}, {}, {}, empty_set()};
   for (long trial = 0; trial < states(); ++trial) {
     randomise(scene, random);
     const double now_s = 100.0;
     const ArmState arm{1, scene.q_rad, scene.last_radps};
-    const Target target = any_target(random);
+    const Target target = random_target(random);
     const State state = reachable_state(random, scene.q_rad, now_s);
     const double age_s = random.uniform(0, 0.09);
     const Inputs inputs{{&arm, now_s, 1}, {&target, now_s, 1}, {&scene.set, now_s - age_s, 1}, 0, false};
@@ -424,13 +424,13 @@ void whatever_the_state_every_command_of_a_cycle_can_be_followed(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(whatever_the_state_the_velocity_is_within_range_and_soon_there),
-      cmocka_unit_test(the_worst_pair_loses_the_least_that_is_possible),
-      cmocka_unit_test(with_nothing_near_a_wish_within_range_is_granted_exactly),
-      cmocka_unit_test(an_arm_driven_at_a_static_obstacle_stops_before_it),
-      cmocka_unit_test(an_arm_in_contact_only_opens_the_distance),
-      cmocka_unit_test(an_arm_between_two_obstacles_gives_way_where_it_can),
-      cmocka_unit_test(whatever_the_state_every_command_of_a_cycle_can_be_followed),
+      cmocka_unit_test(in_any_state_the_velocity_is_within_range_and_computed_within_a_period),
+      cmocka_unit_test(the_worst_hard_row_has_the_least_possible_slack),
+      cmocka_unit_test(without_obstacles_a_nominal_velocity_within_range_is_unchanged),
+      cmocka_unit_test(an_arm_driven_toward_a_static_obstacle_stops_before_it),
+      cmocka_unit_test(in_contact_the_distance_only_grows),
+      cmocka_unit_test(between_two_obstacles_the_slack_is_the_least_possible),
+      cmocka_unit_test(in_any_state_the_arm_can_follow_the_command_of_a_cycle),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

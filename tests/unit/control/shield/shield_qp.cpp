@@ -1,4 +1,4 @@
-// The shield's quadratic programme, held to what its answer has to be: allowed, and nearest.
+// The shield's quadratic programme, checked against the definition of its solution: feasible and of least cost.
 #include "firmware/control/shield/shield_qp.h"
 
 #include <algorithm>
@@ -11,11 +11,10 @@ using namespace sidestep::test;
 
 namespace {
 
-/// What giving up a pass row costs, s2/m2.
+/// Weight of the squared slack of the pass rows, s2/m2.
 constexpr double kPassWeight = 1.0 / (3e-2 * 3e-2);
 
-/// A programme whose hard rows some velocity in range meets: they are laid so that a known one does. The others need
-/// not be met.
+/// A random programme. middle_radps is within the range and meets all hard rows; the other rows may conflict.
 struct Programme {
   JointVector nominal_radps, middle_radps;
   TaskJacobian tool_jacobian;
@@ -41,42 +40,44 @@ struct Programme {
     }
   }
 
-  QpSolution answer() const { return solve(rows, range, {nominal_radps, tool_jacobian, tool_weight, comfort_weight}); }
+  QpSolution solution() const {
+    return solve(rows, range, {nominal_radps, tool_jacobian, tool_weight, comfort_weight});
+  }
 
-  bool has_ways() const {
+  bool has_pass_rows() const {
     return std::any_of(rows.begin(), rows.end(), [](const ConstraintRow& row) { return row.tier == Tier::kPass; });
   }
   double objective(const JointVector& velocity_radps) const {
-    const JointVector off = velocity_radps - nominal_radps;
-    return 0.5 * (off.squaredNorm() + tool_weight * (tool_jacobian * off).squaredNorm());
+    const JointVector change_radps = velocity_radps - nominal_radps;
+    return 0.5 * (change_radps.squaredNorm() + tool_weight * (tool_jacobian * change_radps).squaredNorm());
   }
-  double given_up_mps(Tier tier, const JointVector& velocity_radps) const {
+  double slack_mps(Tier tier, const JointVector& velocity_radps) const {
     double most_mps = 0.0;
     for (const ConstraintRow& row : rows)
       if (row.tier == tier) most_mps = std::max(most_mps, row.bound - row.row.dot(velocity_radps));
     return most_mps;
   }
-  /// With what is given up.
+  /// The objective with the cost of the slack.
   double cost(const JointVector& velocity_radps) const {
-    const double pass_mps = given_up_mps(Tier::kPass, velocity_radps);
-    const double comfort_mps = given_up_mps(Tier::kComfort, velocity_radps);
+    const double pass_mps = slack_mps(Tier::kPass, velocity_radps);
+    const double comfort_mps = slack_mps(Tier::kComfort, velocity_radps);
     return objective(velocity_radps) +
            0.5 * (kPassWeight * pass_mps * pass_mps + comfort_weight * comfort_mps * comfort_mps);
   }
-  /// How many rows hold an answer back; kNone where the range does so, too.
-  static constexpr int kNone = -1;
-  int held_by(const JointVector& velocity_radps) const {
+  /// Number of active rows at a solution; kRangeActive where a limit of the range is active, too.
+  static constexpr int kRangeActive = -1;
+  int active_rows(const JointVector& velocity_radps) const {
     const double rounding = 1e-5;
     const double room_radps =
         std::min((velocity_radps - range.lower_radps).minCoeff(), (range.upper_radps - velocity_radps).minCoeff());
-    if (room_radps < rounding) return kNone;
+    if (room_radps < rounding) return kRangeActive;
     return static_cast<int>(std::count_if(rows.begin(), rows.end(), [&](const ConstraintRow& row) {
-      const double lack_mps = row.bound - row.row.dot(velocity_radps);
-      const double most_mps = row.tier == Tier::kHard ? 0.0 : given_up_mps(row.tier, velocity_radps);
-      return (row.tier == Tier::kHard || most_mps > rounding) && lack_mps > most_mps - rounding;
+      const double shortfall_mps = row.bound - row.row.dot(velocity_radps);
+      const double most_mps = row.tier == Tier::kHard ? 0.0 : slack_mps(row.tier, velocity_radps);
+      return (row.tier == Tier::kHard || most_mps > rounding) && shortfall_mps > most_mps - rounding;
     }));
   }
-  bool allows(const JointVector& velocity_radps, double rounding) const {
+  bool is_feasible(const JointVector& velocity_radps, double rounding) const {
     bool all = ((velocity_radps - range.lower_radps).array() >= -rounding).all() &&
                ((range.upper_radps - velocity_radps).array() >= -rounding).all();
     for (const ConstraintRow& row : rows)
@@ -85,40 +86,41 @@ struct Programme {
   }
 };
 
-/// The cost is convex: what no small step lowers is the least. A hard row may give a little, which counts as cost.
-void the_answer_is_allowed_and_no_allowed_step_brings_it_nearer(void**) {
+/// The cost is convex, so a cost that no small step lowers is the least. A hard row may keep a small slack, whose cost
+/// counts.
+void the_solution_is_feasible_and_no_feasible_step_lowers_its_cost(void**) {
   Random random(1);
-  int steps = 0, held_by_the_range = 0;
-  std::array<int, kMaxRows + 1> held_by{};
+  int steps = 0, range_active = 0;
+  std::array<int, kMaxRows + 1> active_rows{};
   for (int trial = 0; trial < 40000; ++trial) {
     const int joints = 6 + random.index(5);
     const Programme programme(joints, random);
-    const QpSolution answer = programme.answer();
-    const double give_mps = programme.has_ways() ? 5e-3 : 1e-3;  // pass rows pull harder than comfort
-    check(programme.allows(answer.velocity_radps, give_mps), "trial %d: not allowed", trial);
-    const double cost = programme.cost(answer.velocity_radps), rounding = 1e-6 * (1.0 + cost);
-    check(answer.cost >= cost - rounding, "trial %d: says %g, is %g", trial, answer.cost, cost);
-    const int rows = programme.held_by(answer.velocity_radps);
-    ++(rows == Programme::kNone ? held_by_the_range : held_by[rows]);
+    const QpSolution solution = programme.solution();
+    const double most_slack_mps = programme.has_pass_rows() ? 5e-3 : 1e-3;  // pass rows weigh more than comfort rows
+    check(programme.is_feasible(solution.velocity_radps, most_slack_mps), "trial %d: not feasible", trial);
+    const double cost = programme.cost(solution.velocity_radps), rounding = 1e-6 * (1.0 + cost);
+    check(solution.cost >= cost - rounding, "trial %d: cost %g reported, %g computed", trial, solution.cost, cost);
+    const int rows = programme.active_rows(solution.velocity_radps);
+    ++(rows == Programme::kRangeActive ? range_active : active_rows[rows]);
     for (int i = 0; i < 50; ++i) {
-      const JointVector inward = programme.middle_radps - answer.velocity_radps;
-      const JointVector elsewhere =
-          answer.velocity_radps + random.uniform(0, 0.1) * inward + random.joints(joints, -0.02, 0.02);
-      if (!programme.allows(elsewhere, 0.0)) continue;
+      const JointVector inward = programme.middle_radps - solution.velocity_radps;
+      const JointVector other_radps =
+          solution.velocity_radps + random.uniform(0, 0.1) * inward + random.joints(joints, -0.02, 0.02);
+      if (!programme.is_feasible(other_radps, 0.0)) continue;
       ++steps;
-      check(programme.cost(elsewhere) >= answer.cost - rounding, "trial %d: %g, and %g would be allowed", trial,
-            answer.cost, programme.cost(elsewhere));
+      check(programme.cost(other_radps) >= solution.cost - rounding, "trial %d: cost %g, a feasible step costs %g",
+            trial, solution.cost, programme.cost(other_radps));
     }
   }
-  check(held_by_the_range > 100 && held_by[0] > 100 && held_by[1] > 50 && held_by[2] > 50 && held_by[3] > 50 &&
-            held_by[4] > 50 && steps > 10000,
-        "%d answers held back by the range, %d, %d, %d, %d and %d by none to four rows alone, %d steps tried",
-        held_by_the_range, held_by[0], held_by[1], held_by[2], held_by[3], held_by[4], steps);
+  check(range_active > 100 && active_rows[0] > 100 && active_rows[1] > 50 && active_rows[2] > 50 &&
+            active_rows[3] > 50 && active_rows[4] > 50 && steps > 10000,
+        "%d solutions at the range, %d, %d, %d, %d and %d with none to four active rows only, %d steps", range_active,
+        active_rows[0], active_rows[1], active_rows[2], active_rows[3], active_rows[4], steps);
 }
 
-/// Two rows ask for opposite velocities of the first joint: both lose half of what lies between. A third does not use
-/// it.
-void rows_that_contradict_each_other_do_not_spoil_a_third(void**) {
+/// Two rows demand opposite velocities of the first joint; each gets half of their difference as slack. The third row
+/// must not use that slack.
+void two_conflicting_rows_do_not_relax_a_third(void**) {
   const int joints = 7;
   const JointVector rest = JointVector::Zero(joints), one = JointVector::Unit(joints, 0);
   const JointVector another = JointVector::Unit(joints, 1);
@@ -129,21 +131,20 @@ void rows_that_contradict_each_other_do_not_spoil_a_third(void**) {
   rows.add({another, 0.3, Tier::kHard});
   for (const double tool_weight : {0.0, 25.0}) {
     const TaskJacobian tool_jacobian = TaskJacobian::Identity(3, joints);
-    const QpSolution answer = solve(rows, range, {rest, tool_jacobian, tool_weight, 1.0});
-    check_near(answer.velocity_radps[0], 0.0, 1e-3);
-    check_near(answer.velocity_radps[1], 0.3, 1e-3);
-    check_near(answer.hard_slack_mps, 0.5, 1e-3);
+    const QpSolution solution = solve(rows, range, {rest, tool_jacobian, tool_weight, 1.0});
+    check_near(solution.velocity_radps[0], 0.0, 1e-3);
+    check_near(solution.velocity_radps[1], 0.3, 1e-3);
+    check_near(solution.hard_slack_mps, 0.5, 1e-3);
   }
 }
 
-/// So that the cycle finds it and stops.
-void a_wish_that_is_no_number_is_not_made_one(void**) {
+/// The cycle detects the solution that is not finite and raises a fault.
+void a_nominal_velocity_that_is_not_a_number_gives_no_finite_solution(void**) {
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
     Programme programme(7, random);
     programme.nominal_radps[random.index(7)] = std::numeric_limits<double>::quiet_NaN();
-    check(!programme.answer().velocity_radps.allFinite(), "trial %d: %s", trial,
-          programme.tool_weight > 0 ? "tool" : "");
+    check(!programme.solution().velocity_radps.allFinite(), "trial %d: tool weight %g", trial, programme.tool_weight);
   }
 }
 
@@ -151,9 +152,9 @@ void a_wish_that_is_no_number_is_not_made_one(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(the_answer_is_allowed_and_no_allowed_step_brings_it_nearer),
-      cmocka_unit_test(a_wish_that_is_no_number_is_not_made_one),
-      cmocka_unit_test(rows_that_contradict_each_other_do_not_spoil_a_third),
+      cmocka_unit_test(the_solution_is_feasible_and_no_feasible_step_lowers_its_cost),
+      cmocka_unit_test(a_nominal_velocity_that_is_not_a_number_gives_no_finite_solution),
+      cmocka_unit_test(two_conflicting_rows_do_not_relax_a_third),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-/// A record whose bytes all follow from its number.
+/// The bytes of a record, all derived from its number.
 std::vector<uint8_t> numbered(uint32_t number, size_t size) {
   std::vector<uint8_t> bytes(size);
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<uint8_t>(number >> (8 * (i % 4)));
@@ -23,7 +23,7 @@ uint32_t number_of(const RecordRing::Copy::Record& record) {
   return number;
 }
 
-bool whole(const RecordRing::Copy::Record& record) {
+bool is_intact(const RecordRing::Copy::Record& record) {
   const std::vector<uint8_t> expected = numbered(number_of(record), record.size);
   return std::equal(expected.begin(), expected.end(), record.bytes);
 }
@@ -36,7 +36,7 @@ void an_empty_ring_has_no_record(void**) {
   assert_false(copy.next(record));
 }
 
-void records_of_all_sizes_come_back_in_order_as_often_as_wanted(void**) {
+void records_of_all_sizes_can_be_read_in_order_repeatedly(void**) {
   RecordRing ring(100000);
   for (uint32_t i = 0; i < 40; ++i) {
     const auto bytes = numbered(i, i);
@@ -56,7 +56,7 @@ void records_of_all_sizes_come_back_in_order_as_often_as_wanted(void**) {
   }
 }
 
-void the_oldest_records_give_way_and_the_newest_fill_the_ring(void**) {
+void the_oldest_records_are_overwritten_and_the_newest_fill_the_ring(void**) {
   test::Random random(1);
   RecordRing ring(4096);
   RecordRing::Copy copy(ring);
@@ -65,19 +65,20 @@ void the_oldest_records_give_way_and_the_newest_fill_the_ring(void**) {
     assert_true(ring.write(1, bytes.data(), bytes.size()));
     ring.copy(copy);
     RecordRing::Copy::Record record;
-    size_t held = 0;
+    size_t stored = 0;
     uint32_t last = 0;
     for (bool first = true; copy.next(record); first = false) {
-      check(whole(record) && (first || number_of(record) == last + 1), "record %u behind %u", number_of(record), last);
+      check(is_intact(record) && (first || number_of(record) == last + 1), "record %u behind %u", number_of(record),
+            last);
       last = number_of(record);
-      held += record.size + 8;
+      stored += record.size + 8;
     }
     assert_int_equal(last, i);
-    check(i < 100 || held > 4096 - 2 * 700, "%zu bytes held", held);
+    check(i < 100 || stored > 4096 - 2 * 700, "%zu bytes stored", stored);
   }
 }
 
-void a_record_larger_than_half_the_ring_is_dropped_and_harms_nothing(void**) {
+void a_record_larger_than_half_the_ring_is_dropped_and_changes_nothing(void**) {
   RecordRing ring(1024);
   const auto small = numbered(7, 100), large = numbered(8, 600);
   assert_true(ring.write(1, small.data(), small.size()));
@@ -87,10 +88,10 @@ void a_record_larger_than_half_the_ring_is_dropped_and_harms_nothing(void**) {
   RecordRing::Copy copy(ring);
   ring.copy(copy);
   RecordRing::Copy::Record record;
-  assert_true(copy.next(record) && number_of(record) == 7 && whole(record));
+  assert_true(copy.next(record) && number_of(record) == 7 && is_intact(record));
 }
 
-void a_copy_taken_while_another_thread_writes_holds_whole_records_in_order(void**) {
+void a_copy_taken_while_another_thread_writes_holds_intact_records_in_order(void**) {
   RecordRing ring(1 << 16);
   std::atomic<bool> end{false};
   std::thread writer([&] {
@@ -108,7 +109,7 @@ void a_copy_taken_while_another_thread_writes_holds_whole_records_in_order(void*
     RecordRing::Copy::Record record;
     uint32_t last = 0;
     for (; copy.next(record); ++seen) {
-      torn += !whole(record);
+      torn += !is_intact(record);
       out_of_order += last != 0 && number_of(record) != last + 1;
       last = number_of(record);
     }
@@ -124,10 +125,10 @@ void a_copy_taken_while_another_thread_writes_holds_whole_records_in_order(void*
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(an_empty_ring_has_no_record),
-      cmocka_unit_test(records_of_all_sizes_come_back_in_order_as_often_as_wanted),
-      cmocka_unit_test(the_oldest_records_give_way_and_the_newest_fill_the_ring),
-      cmocka_unit_test(a_record_larger_than_half_the_ring_is_dropped_and_harms_nothing),
-      cmocka_unit_test(a_copy_taken_while_another_thread_writes_holds_whole_records_in_order),
+      cmocka_unit_test(records_of_all_sizes_can_be_read_in_order_repeatedly),
+      cmocka_unit_test(the_oldest_records_are_overwritten_and_the_newest_fill_the_ring),
+      cmocka_unit_test(a_record_larger_than_half_the_ring_is_dropped_and_changes_nothing),
+      cmocka_unit_test(a_copy_taken_while_another_thread_writes_holds_intact_records_in_order),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -88,7 +88,7 @@ void a_point_target_ignores_the_orientation_fields(void**) {
   check_near(target.angular_velocity_radps, Vector3(0, 0, 0), 0);
 }
 
-void a_quaternion_slightly_off_is_made_unit(void**) {
+void a_quaternion_of_nearly_unit_length_is_normalized(void**) {
   Admission admission(kJoints, Settings());
   target_t message = target_message(5, Vector3(1, 2, 3), Vector3(0, 0, 0));
   message.tracks_orientation = 1;
@@ -123,7 +123,7 @@ void spheres_and_capsules_arrive_as_they_were_sent(void**) {
   }
 }
 
-void a_box_arrives_with_its_corners_and_a_capsule_that_holds_them(void**) {
+void a_box_arrives_with_its_corners_and_a_capsule_that_encloses_them(void**) {
   Random random(4);
   const auto set = std::make_unique<ObstacleSet>();
   Admission admission(kJoints, Settings());
@@ -147,7 +147,7 @@ void a_box_arrives_with_its_corners_and_a_capsule_that_holds_them(void**) {
   }
 }
 
-void the_empty_set_is_a_message_too(void**) {
+void an_empty_set_is_accepted(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   set->count = 3;
   Admission admission(kJoints, Settings());
@@ -155,7 +155,7 @@ void the_empty_set_is_a_message_too(void**) {
   assert_int_equal(set->count, 0);
 }
 
-void as_many_obstacles_as_promised_are_taken_and_no_more(void**) {
+void a_set_of_4096_obstacles_is_accepted_and_a_larger_one_rejected(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   Admission admission(kJoints, Settings());
   std::vector<obstacle_t> obstacles(kMaxObstacles, test::sphere(1, Vector3(1, 2, 3), 0.1, Vector3(0, 0, 0)));
@@ -169,8 +169,8 @@ void as_many_obstacles_as_promised_are_taken_and_no_more(void**) {
   assert_int_equal(admission.rejected(), 1);
 }
 
-/// Each channel has an order of its own; what is merely old is dropped without being counted as bad.
-void old_messages_are_dropped_but_are_no_offence(void**) {
+/// Each channel has its own order.
+void old_messages_are_dropped_but_not_counted_as_rejected(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   Admission admission(kJoints, Settings());
   ArmState arm;
@@ -187,8 +187,8 @@ void old_messages_are_dropped_but_are_no_offence(void**) {
   assert_string_equal(admission.last_reason(), "");
 }
 
-/// Each says that its own are all there are; the clock of one is behind.
-void of_two_senders_of_obstacles_both_are_heard(void**) {
+/// Each sender reports only its own obstacles as the full set; the clock of one is behind.
+void the_obstacles_of_two_senders_all_count(void**) {
   for (const int64_t behind_us : {0, 15'000, 400'000}) {
     const auto set = std::make_unique<ObstacleSet>();
     Admission admission(kJoints, Settings());
@@ -198,20 +198,20 @@ void of_two_senders_of_obstacles_both_are_heard(void**) {
     for (int turn = 0; turn < 100; ++turn) {
       const double now_s = 1.0 + 0.02 * turn;
       const auto utime = static_cast<int64_t>(now_s * 1e6);
-      const auto hear = [&](int64_t at_us, const obstacle_t& obstacle, double at_s) {
+      const auto receive = [&](int64_t at_us, const obstacle_t& obstacle, double at_s) {
         if (!admit(admission, encoded(obstacles_message(at_us, {obstacle})), *set, at_s)) return;
         ++accepted;
         check(turn == 0 || set->count == 2, "%ld us behind, turn %d: %d obstacles", behind_us, turn, set->count);
       };
-      hear(utime, one, now_s);
-      hear(utime + 10'000 - behind_us, other, now_s + 0.01);
+      receive(utime, one, now_s);
+      receive(utime + 10'000 - behind_us, other, now_s + 0.01);
     }
     check(accepted >= 100, "%d accepted", accepted);
     assert_int_equal(admission.rejected(), 0);
   }
 }
 
-void no_message_allocates_once_each_kind_has_been_seen(void**) {
+void no_message_allocates_after_the_first_of_its_kind(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   Admission admission(kJoints, Settings());
   ArmState arm;
@@ -239,7 +239,7 @@ void no_message_allocates_once_each_kind_has_been_seen(void**) {
   const int64_t before = test::allocation_count();
   int* volatile one = new int(1);
   delete one;
-  assert_true(test::allocation_count() > before);  // the counter counts
+  assert_true(test::allocation_count() > before);  // the counter works
 }
 
 }  // namespace
@@ -249,14 +249,14 @@ int main() {
       cmocka_unit_test(an_arm_state_arrives_as_it_was_sent),
       cmocka_unit_test(a_target_arrives_as_it_was_sent),
       cmocka_unit_test(a_point_target_ignores_the_orientation_fields),
-      cmocka_unit_test(a_quaternion_slightly_off_is_made_unit),
+      cmocka_unit_test(a_quaternion_of_nearly_unit_length_is_normalized),
       cmocka_unit_test(spheres_and_capsules_arrive_as_they_were_sent),
-      cmocka_unit_test(a_box_arrives_with_its_corners_and_a_capsule_that_holds_them),
-      cmocka_unit_test(the_empty_set_is_a_message_too),
-      cmocka_unit_test(as_many_obstacles_as_promised_are_taken_and_no_more),
-      cmocka_unit_test(old_messages_are_dropped_but_are_no_offence),
-      cmocka_unit_test(of_two_senders_of_obstacles_both_are_heard),
-      cmocka_unit_test(no_message_allocates_once_each_kind_has_been_seen),
+      cmocka_unit_test(a_box_arrives_with_its_corners_and_a_capsule_that_encloses_them),
+      cmocka_unit_test(an_empty_set_is_accepted),
+      cmocka_unit_test(a_set_of_4096_obstacles_is_accepted_and_a_larger_one_rejected),
+      cmocka_unit_test(old_messages_are_dropped_but_not_counted_as_rejected),
+      cmocka_unit_test(the_obstacles_of_two_senders_all_count),
+      cmocka_unit_test(no_message_allocates_after_the_first_of_its_kind),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -1,4 +1,4 @@
-// What controller_status_t says of a guide.
+// How controller_status_t encodes a guide.
 #include <sidestep/controller_status_t.hpp>
 
 #include "firmware/io/lcm/encoder.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPoints = 8;
 
-controller_status_t told(const Report& report) {
+controller_status_t decoded_status(const Report& report) {
   Encoder encoder(test::lwa3());
   const Packet packet = encoder.encode(report, CycleRecord{});
   controller_status_t status;
@@ -20,7 +20,7 @@ controller_status_t told(const Report& report) {
   return status;
 }
 
-Guide way_from_home() {
+Guide guide_from_home() {
   Guide guide;
   guide.foresight_status = ForesightStatus::kGuided;
   guide.knots = 2;
@@ -30,13 +30,13 @@ Guide way_from_home() {
   return guide;
 }
 
-void the_way_leads_from_where_the_guide_is_now_to_its_end(void**) {
-  const Guide guide = way_from_home();
+void the_tool_path_leads_from_the_guides_current_point_to_its_end(void**) {
+  const Guide guide = guide_from_home();
   Report report;
   report.foresight_status = guide.foresight_status;
   report.guide_horizon_s = 1.5;
   report.guide = &guide;
-  const controller_status_t status = told(report);
+  const controller_status_t status = decoded_status(report);
   assert_int_equal(status.foresight, controller_status_t::GUIDED);
   for (int i = 0; i < kPoints; ++i) {
     const LinkPoses poses =
@@ -45,8 +45,8 @@ void the_way_leads_from_where_the_guide_is_now_to_its_end(void**) {
   }
 }
 
-void without_a_guide_there_is_no_way(void**) {
-  const controller_status_t status = told(Report{});
+void without_a_guide_the_tool_path_is_zero(void**) {
+  const controller_status_t status = decoded_status(Report{});
   for (const auto& point : status.guide_tool)
     for (const double coordinate : point) check_near(coordinate, 0.0, 0.0);
 }
@@ -55,8 +55,8 @@ void without_a_guide_there_is_no_way(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(the_way_leads_from_where_the_guide_is_now_to_its_end),
-      cmocka_unit_test(without_a_guide_there_is_no_way),
+      cmocka_unit_test(the_tool_path_leads_from_the_guides_current_point_to_its_end),
+      cmocka_unit_test(without_a_guide_the_tool_path_is_zero),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kJoints = 7;
 
-/// What became of a status; NaN-proof comparison is up to the caller.
+/// Decodes a status into an arm state. Returns whether the status was accepted.
 bool admit(const drake::lcmt_iiwa_status& status, ArmState& state) {
   Admission gate(kJoints, Settings(), false, Dialect::kIiwa);
   const test::Bytes bytes = encoded(status);
@@ -36,7 +36,7 @@ void a_status_becomes_an_arm_state(void**) {
   check_near(state.held_rad, commanded_rad, 0);
 }
 
-void a_commanded_position_that_nothing_can_hold_is_not_believed(void**) {
+void an_impossible_commanded_position_is_ignored(void**) {
   const JointVector here_rad = JointVector::Constant(kJoints, 0.3), rest = JointVector::Zero(kJoints);
   for (const double wrong_rad : {0.0, 0.4, std::nan(""), std::numeric_limits<double>::infinity()}) {
     for (int joint = 0; joint < kJoints; ++joint) {
@@ -49,7 +49,7 @@ void a_commanded_position_that_nothing_can_hold_is_not_believed(void**) {
   }
 }
 
-void a_command_is_a_position_alone(void**) {
+void a_command_holds_positions_only(void**) {
   const Arm& arm = test::lwa3();
   Encoder encoder(arm, Dialect::kIiwa);
   const Command command{JointVector::LinSpaced(kJoints, -1, 1), JointVector::Constant(kJoints, 0.5)};
@@ -63,15 +63,15 @@ void a_command_is_a_position_alone(void**) {
     check_near(message.joint_position[static_cast<size_t>(i)], command.position_rad[i], 0);
 }
 
-void a_stream_begins_at_what_the_drives_hold(void**) {
+void the_command_stream_begins_at_the_position_that_the_drives_hold(void**) {
   ClosedLoop loop = test::at_home("sidestep");
   loop.arm.held_rad = loop.arm.position_rad + JointVector::Constant(kJoints, 0.01);
   loop.run_until(Mode::kHold, 1.0);
   check_near(loop.last.command.position_rad, loop.arm.held_rad, 1e-3);
 }
 
-/// Even if the configuration asks for no patience at all.
-void no_command_leaves_within_the_guard_time(void**) {
+/// Even where the configuration requires no consistent states before the start.
+void no_command_is_sent_within_the_guard_time(void**) {
   ClosedLoop loop = test::at_home("sidestep");
   loop.model.settings.start_guard_s = 0.25;
   loop.model.settings.timeouts.consistent_s = 0.0;
@@ -84,12 +84,12 @@ void no_command_leaves_within_the_guard_time(void**) {
   check_near(silence_s(), 0.26, 1e-6);  // one cycle passes before the first status
   loop.target_speaks = true;
   loop.run(0.3);
-  loop.arm_clock_offset_us = -1'000'000;  // another driver, without any pause: it begins to count anew
+  loop.arm_clock_offset_us = -1'000'000;  // another driver without a pause: its utimes start again
   check_near(silence_s(), 0.26, 1e-6);
   loop.run(0.3);
   loop.arm_speaks = false;
   loop.run(0.26);
-  loop.arm_speaks = true;  // it may be another one
+  loop.arm_speaks = true;  // the driver may be another one
   check_near(silence_s(), 0.26, 1e-6);
 }
 
@@ -98,10 +98,10 @@ void no_command_leaves_within_the_guard_time(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_status_becomes_an_arm_state),
-      cmocka_unit_test(a_commanded_position_that_nothing_can_hold_is_not_believed),
-      cmocka_unit_test(a_command_is_a_position_alone),
-      cmocka_unit_test(a_stream_begins_at_what_the_drives_hold),
-      cmocka_unit_test(no_command_leaves_within_the_guard_time),
+      cmocka_unit_test(an_impossible_commanded_position_is_ignored),
+      cmocka_unit_test(a_command_holds_positions_only),
+      cmocka_unit_test(the_command_stream_begins_at_the_position_that_the_drives_hold),
+      cmocka_unit_test(no_command_is_sent_within_the_guard_time),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

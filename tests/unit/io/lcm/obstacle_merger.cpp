@@ -30,19 +30,19 @@ Config config_at(const Eigen::Isometry3d& world_from_base, std::vector<std::stri
   return config;
 }
 
-Bytes ball_at(int64_t utime, const Vector3& place_m, const Vector3& velocity_mps) {
-  return encoded(obstacles_message(utime, {sphere(7, place_m, 0.1, velocity_mps)}));
+Bytes ball_at(int64_t utime, const Vector3& centre_m, const Vector3& velocity_mps) {
+  return encoded(obstacles_message(utime, {sphere(7, centre_m, 0.1, velocity_mps)}));
 }
 
-/// Both ends of what a controller knows of its surroundings.
-struct Listener {
-  explicit Listener(const Config& config) : obstacle_merger(config), gate(7, config.model.settings) {}
+/// The merger and the admission of one controller.
+struct Subscriber {
+  explicit Subscriber(const Config& config) : obstacle_merger(config), gate(7, config.model.settings) {}
 
-  /// Whether a whole came of it, then in `set` and `age_s`.
-  bool hear(size_t part, const Bytes& bytes, double now_s) {
-    const auto whole = obstacle_merger.join(part, bytes.data(), bytes.size(), now_s);
-    if (whole) age_s = whole->age_s;
-    return whole && gate.admit(whole->packet.bytes, whole->packet.size, now_s - age_s, *set);
+  /// Returns whether the message led to a merged set, which is then in `set` and `age_s`.
+  bool receive(size_t part, const Bytes& bytes, double now_s) {
+    const auto merged = obstacle_merger.join(part, bytes.data(), bytes.size(), now_s);
+    if (merged) age_s = merged->age_s;
+    return merged && gate.admit(merged->packet.bytes, merged->packet.size, now_s - age_s, *set);
   }
 
   ObstacleMerger obstacle_merger;
@@ -51,7 +51,7 @@ struct Listener {
   double age_s = 0.0;
 };
 
-void links_move_as_finite_differences_say(void**) {
+void link_velocities_equal_finite_differences(void**) {
   test::Random random(1);
   const double dt_s = 1e-5;
   for (int trial = 0; trial < 20; ++trial) {
@@ -67,39 +67,39 @@ void links_move_as_finite_differences_say(void**) {
   }
 }
 
-void links_arrive_in_the_base_frame_of_who_listens(void**) {
-  const Config teller = config_at(pose({-0.5, 0.1, 0.2}, M_PI), {}),
-               hearer = config_at(pose({0.5, 0, 0}, 0.7), {"LINKS"});
+void links_arrive_in_the_base_frame_of_the_receiver(void**) {
+  const Config sender = config_at(pose({-0.5, 0.1, 0.2}, M_PI), {}),
+               receiver = config_at(pose({0.5, 0, 0}, 0.7), {"LINKS"});
   const Eigen::Isometry3d there_from_here =
-      hearer.neighbours.world_from_base.inverse() * teller.neighbours.world_from_base;
+      receiver.neighbours.world_from_base.inverse() * sender.neighbours.world_from_base;
   test::Random random(2);
   const ArmState arm{1, random.joints(7, -2, 2), random.joints(7, -2, 2)};
-  LinkEncoder links(teller);
+  LinkEncoder links(sender);
   const Packet packet = links.encode(arm, 5);
-  Listener listener(hearer);
-  assert_false(listener.hear(1, Bytes(packet.bytes, packet.bytes + packet.size), 1.0));
-  assert_true(listener.hear(0, ball_at(1, {1, 1, 1}, {0, 0, 0}), 1.0));
+  Subscriber subscriber(receiver);
+  assert_false(subscriber.receive(1, Bytes(packet.bytes, packet.bytes + packet.size), 1.0));
+  assert_true(subscriber.receive(0, ball_at(1, {1, 1, 1}, {0, 0, 0}), 1.0));
   const auto shapes = static_cast<int>(lwa3().shapes.size());
-  assert_int_equal(listener.set->count, 1 + shapes);
-  assert_int_equal(listener.set->obstacles[0].id, 7);
+  assert_int_equal(subscriber.set->count, 1 + shapes);
+  assert_int_equal(subscriber.set->obstacles[0].id, 7);
   const LinkPoses poses = forward_kinematics(lwa3(), arm.position_rad);
   for (int i = 0; i < shapes; ++i) {
     const LinkShape& shape = lwa3().shapes[static_cast<size_t>(i)];
-    const Obstacle told = transformed(there_from_here, link_obstacle(poses, shape, arm.velocity_radps));
-    const Obstacle& heard = listener.set->obstacles[static_cast<size_t>(1 + i)];
-    assert_int_equal(heard.id, -(10000 + i));
-    check_near(heard.capsule.start, told.capsule.start, 1e-12);
-    check_near(heard.capsule.end, told.capsule.end, 1e-12);
-    check_near(heard.capsule.radius_m, told.capsule.radius_m, 0);
-    check_near(heard.velocity_mps, told.velocity_mps, 1e-12);
-    const bool turns = told.capsule.start != told.capsule.end;
-    if (turns) check_near(heard.angular_velocity_radps, told.angular_velocity_radps, 1e-12);
+    const Obstacle expected = transformed(there_from_here, link_obstacle(poses, shape, arm.velocity_radps));
+    const Obstacle& received = subscriber.set->obstacles[static_cast<size_t>(1 + i)];
+    assert_int_equal(received.id, -(10000 + i));
+    check_near(received.capsule.start, expected.capsule.start, 1e-12);
+    check_near(received.capsule.end, expected.capsule.end, 1e-12);
+    check_near(received.capsule.radius_m, expected.capsule.radius_m, 0);
+    check_near(received.velocity_mps, expected.velocity_mps, 1e-12);
+    const bool turns = expected.capsule.start != expected.capsule.end;
+    if (turns) check_near(received.angular_velocity_radps, expected.angular_velocity_radps, 1e-12);
   }
 }
 
-/// However they lie and turn: none gets fatter on its way.
-void all_shapes_arrive_as_they_are(void**) {
-  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+/// Merging enlarges no shape in any orientation.
+void all_shapes_arrive_unchanged(void**) {
+  Subscriber subscriber(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
   test::Random random(3);
   for (int trial = 1; trial <= 100; ++trial) {
     std::vector<obstacle_t> all(3);
@@ -113,94 +113,96 @@ void all_shapes_arrive_as_they_are(void**) {
       for (double& size : each.size) size = random.uniform(0.05, 0.8);
     }
     const Bytes bytes = encoded(obstacles_message(trial, all));
-    const auto as_it_is = std::make_unique<ObstacleSet>();
+    const auto direct = std::make_unique<ObstacleSet>();
     Admission gate(7, config_at(pose({0, 0, 0}, 0), {}).model.settings);
-    assert_true(gate.admit(bytes.data(), bytes.size(), 0.01 * trial, *as_it_is));
-    listener.hear(1, encoded(obstacles_message(trial, {})), 0.01 * trial);
-    assert_true(listener.hear(0, bytes, 0.01 * trial));
+    assert_true(gate.admit(bytes.data(), bytes.size(), 0.01 * trial, *direct));
+    subscriber.receive(1, encoded(obstacles_message(trial, {})), 0.01 * trial);
+    assert_true(subscriber.receive(0, bytes, 0.01 * trial));
     for (size_t i = 0; i < 3; ++i) {
-      const Obstacle &sent = as_it_is->obstacles[i], &heard = listener.set->obstacles[i];
-      check_near(heard.capsule.start, sent.capsule.start, 1e-12);
-      check_near(heard.capsule.end, sent.capsule.end, 1e-12);
-      check_near(heard.capsule.radius_m, sent.capsule.radius_m, 1e-12);
-      check_near(heard.half_width_m, sent.half_width_m, 1e-12);
-      check_near(heard.half_height_m, sent.half_height_m, 1e-12);
+      const Obstacle &sent = direct->obstacles[i], &received = subscriber.set->obstacles[i];
+      check_near(received.capsule.start, sent.capsule.start, 1e-12);
+      check_near(received.capsule.end, sent.capsule.end, 1e-12);
+      check_near(received.capsule.radius_m, sent.capsule.radius_m, 1e-12);
+      check_near(received.half_width_m, sent.half_width_m, 1e-12);
+      check_near(received.half_height_m, sent.half_height_m, 1e-12);
     }
   }
 }
 
-/// The ball moves at 1 m/s: what is heard later is moved back, so that the whole is true at its own time.
-void a_whole_is_as_old_as_its_oldest_part(void**) {
-  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+/// The ball moves at 1 m/s. The newer part is extrapolated back to the time of the oldest part.
+void a_merged_set_is_as_old_as_its_oldest_part(void**) {
+  Subscriber subscriber(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
   const Bytes neighbour = ball_at(1, {2, 0, 0}, {0, 0, 0});
-  listener.hear(1, neighbour, 1.00);
+  subscriber.receive(1, neighbour, 1.00);
   for (const double now_s : {1.02, 1.06, 1.09}) {
-    check(listener.hear(0, ball_at(static_cast<int64_t>(now_s * 1e6), {now_s, 0, 0}, {1, 0, 0}), now_s), "%g s", now_s);
-    check_near(listener.age_s, now_s - 1.00, 1e-9);
-    check_near(listener.set->obstacles[0].capsule.start.x(), 1.00, 1e-9);
-    check_near(listener.set->obstacles[1].capsule.start.x(), 2.00, 1e-9);
+    check(subscriber.receive(0, ball_at(static_cast<int64_t>(now_s * 1e6), {now_s, 0, 0}, {1, 0, 0}), now_s), "%g s",
+          now_s);
+    check_near(subscriber.age_s, now_s - 1.00, 1e-9);
+    check_near(subscriber.set->obstacles[0].capsule.start.x(), 1.00, 1e-9);
+    check_near(subscriber.set->obstacles[1].capsule.start.x(), 2.00, 1e-9);
   }
-  assert_false(listener.hear(0, ball_at(1110000, {1.11, 0, 0}, {1, 0, 0}), 1.11));  // it has fallen silent
-  assert_true(listener.hear(1, ball_at(2, {2, 0, 0}, {0, 0, 0}), 1.12));
-  check_near(listener.age_s, 0.01, 1e-9);
-  assert_int_equal(listener.obstacle_merger.rejected(), 0);
+  assert_false(
+      subscriber.receive(0, ball_at(1110000, {1.11, 0, 0}, {1, 0, 0}), 1.11));  // the neighbour's part is too old
+  assert_true(subscriber.receive(1, ball_at(2, {2, 0, 0}, {0, 0, 0}), 1.12));
+  check_near(subscriber.age_s, 0.01, 1e-9);
+  assert_int_equal(subscriber.obstacle_merger.rejected(), 0);
 }
 
-/// A simulator that begins again: what a neighbour said before counts no more.
-void where_the_clock_starts_over_a_silent_neighbour_is_unknown(void**) {
-  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
-  assert_false(listener.hear(0, ball_at(1, {1, 0, 0}, {0, 0, 0}), 100.00));
-  assert_true(listener.hear(1, ball_at(1, {2, 0, 0}, {1, 0, 0}), 100.01));
+/// After a restart of the simulator, earlier messages of a neighbour no longer count.
+void after_a_restart_of_the_clock_a_silent_neighbour_is_unknown(void**) {
+  Subscriber subscriber(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+  assert_false(subscriber.receive(0, ball_at(1, {1, 0, 0}, {0, 0, 0}), 100.00));
+  assert_true(subscriber.receive(1, ball_at(1, {2, 0, 0}, {1, 0, 0}), 100.01));
   for (const double now_s : {0.01, 0.02, 50.0, 100.0, 100.01, 100.02})
-    assert_false(listener.hear(0, ball_at(static_cast<int64_t>(now_s * 1e6), {1, 0, 0}, {0, 0, 0}), now_s));
-  assert_true(listener.hear(1, ball_at(2, {2, 0, 0}, {1, 0, 0}), 100.03));
+    assert_false(subscriber.receive(0, ball_at(static_cast<int64_t>(now_s * 1e6), {1, 0, 0}, {0, 0, 0}), now_s));
+  assert_true(subscriber.receive(1, ball_at(2, {2, 0, 0}, {1, 0, 0}), 100.03));
 }
 
-void a_bad_message_of_a_neighbour_leaves_the_others_alone(void**) {
-  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS", "MORE"}));
-  listener.hear(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0);
-  listener.hear(2, ball_at(1, {3, 0, 0}, {0, 0, 0}), 1.0);
-  assert_false(listener.hear(1, ball_at(2, {std::nan(""), 0, 0}, {0, 0, 0}), 1.01));
-  assert_int_equal(listener.obstacle_merger.rejected(), 1);
-  assert_string_equal(listener.obstacle_merger.last_reason(), "obstacles with impossible values");
-  assert_true(listener.hear(0, ball_at(1, {1, 0, 0}, {0, 0, 0}), 1.02));
-  assert_int_equal(listener.set->count, 3);
+void a_bad_message_of_one_neighbour_does_not_affect_the_others(void**) {
+  Subscriber subscriber(config_at(pose({0, 0, 0}, 0), {"LINKS", "MORE"}));
+  subscriber.receive(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0);
+  subscriber.receive(2, ball_at(1, {3, 0, 0}, {0, 0, 0}), 1.0);
+  assert_false(subscriber.receive(1, ball_at(2, {std::nan(""), 0, 0}, {0, 0, 0}), 1.01));
+  assert_int_equal(subscriber.obstacle_merger.rejected(), 1);
+  assert_string_equal(subscriber.obstacle_merger.last_reason(), "obstacles with impossible values");
+  assert_true(subscriber.receive(0, ball_at(1, {1, 0, 0}, {0, 0, 0}), 1.02));
+  assert_int_equal(subscriber.set->count, 3);
   for (int i = 0; i < 3; ++i)
-    check_near(listener.set->obstacles[static_cast<size_t>(i)].capsule.start.x(), i + 1.0, 1e-12);
-  assert_int_equal(listener.gate.rejected(), 0);
+    check_near(subscriber.set->obstacles[static_cast<size_t>(i)].capsule.start.x(), i + 1.0, 1e-12);
+  assert_int_equal(subscriber.gate.rejected(), 0);
 }
 
-void more_obstacles_than_a_message_holds_are_no_whole(void**) {
-  Listener listener(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
+void more_obstacles_than_a_message_holds_are_not_merged(void**) {
+  Subscriber subscriber(config_at(pose({0, 0, 0}, 0), {"LINKS"}));
   const std::vector<obstacle_t> most(kMaxObstacles, sphere(1, {1, 1, 1}, 0.1, {0, 0, 0}));
-  listener.hear(0, encoded(obstacles_message(1, most)), 1.0);
-  assert_false(listener.hear(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0));
-  assert_int_equal(listener.obstacle_merger.rejected(), 1);
-  assert_true(listener.hear(1, encoded(obstacles_message(2, {})), 1.0));
-  assert_int_equal(listener.set->count, kMaxObstacles);
+  subscriber.receive(0, encoded(obstacles_message(1, most)), 1.0);
+  assert_false(subscriber.receive(1, ball_at(1, {2, 0, 0}, {0, 0, 0}), 1.0));
+  assert_int_equal(subscriber.obstacle_merger.rejected(), 1);
+  assert_true(subscriber.receive(1, encoded(obstacles_message(2, {})), 1.0));
+  assert_int_equal(subscriber.set->count, kMaxObstacles);
 }
 
-void who_listens_to_nobody_takes_messages_as_they_are(void**) {
+void without_neighbours_messages_pass_unchanged(void**) {
   ObstacleMerger alone(config_at(pose({0, 0, 0}, 0), {}));
   const uint8_t garbage[] = {1, 2, 3};
   for (const size_t size : {sizeof garbage, size_t{0}}) {
-    const auto whole = alone.join(0, garbage, size, 1.0);
-    assert_ptr_equal(whole.value().packet.bytes, garbage);
-    assert_int_equal(whole.value().packet.size, size);
+    const auto merged = alone.join(0, garbage, size, 1.0);
+    assert_ptr_equal(merged.value().packet.bytes, garbage);
+    assert_int_equal(merged.value().packet.size, size);
   }
 }
 
-void telling_and_hearing_do_not_allocate(void**) {
+void encoding_and_merging_do_not_allocate(void**) {
   const Config config = config_at(pose({0, 0, 0}, 0), {"LINKS"});
   LinkEncoder links(config);
-  Listener listener(config);
+  Subscriber subscriber(config);
   const ArmState arm{1, test::home_rad(), JointVector::Constant(7, 0.1)};
   const Bytes ball = ball_at(1, {1, 1, 1}, {0, 0, 0});
-  ObstacleMerger& obstacle_merger = listener.obstacle_merger;
+  ObstacleMerger& obstacle_merger = subscriber.obstacle_merger;
   const auto round = [&](int64_t utime) {
-    const Packet told = links.encode(arm, utime);
+    const Packet sent = links.encode(arm, utime);
     obstacle_merger.join(0, ball.data(), ball.size(), 1.0);
-    return obstacle_merger.join(1, told.bytes, told.size, 1.0).has_value();
+    return obstacle_merger.join(1, sent.bytes, sent.size, 1.0).has_value();
   };
   assert_true(round(1));
   const int64_t before = test::allocation_count();
@@ -212,15 +214,15 @@ void telling_and_hearing_do_not_allocate(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(links_move_as_finite_differences_say),
-      cmocka_unit_test(links_arrive_in_the_base_frame_of_who_listens),
-      cmocka_unit_test(all_shapes_arrive_as_they_are),
-      cmocka_unit_test(a_whole_is_as_old_as_its_oldest_part),
-      cmocka_unit_test(where_the_clock_starts_over_a_silent_neighbour_is_unknown),
-      cmocka_unit_test(a_bad_message_of_a_neighbour_leaves_the_others_alone),
-      cmocka_unit_test(more_obstacles_than_a_message_holds_are_no_whole),
-      cmocka_unit_test(who_listens_to_nobody_takes_messages_as_they_are),
-      cmocka_unit_test(telling_and_hearing_do_not_allocate),
+      cmocka_unit_test(link_velocities_equal_finite_differences),
+      cmocka_unit_test(links_arrive_in_the_base_frame_of_the_receiver),
+      cmocka_unit_test(all_shapes_arrive_unchanged),
+      cmocka_unit_test(a_merged_set_is_as_old_as_its_oldest_part),
+      cmocka_unit_test(after_a_restart_of_the_clock_a_silent_neighbour_is_unknown),
+      cmocka_unit_test(a_bad_message_of_one_neighbour_does_not_affect_the_others),
+      cmocka_unit_test(more_obstacles_than_a_message_holds_are_not_merged),
+      cmocka_unit_test(without_neighbours_messages_pass_unchanged),
+      cmocka_unit_test(encoding_and_merging_do_not_allocate),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

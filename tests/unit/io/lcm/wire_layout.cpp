@@ -10,8 +10,8 @@
 
 namespace {
 
-/// LCM's fingerprint of a layout, worked out from LCM's description of it: member by member its name, the name of its
-/// type when that is a primitive one, and its dimensions.
+/// LCM's fingerprint of a layout, computed after LCM's definition from each member's name, the name of its type if that
+/// is a primitive one, and its dimensions.
 class Fingerprint {
  public:
   Fingerprint& add(const std::string& name, const std::string& type, const std::vector<std::string>& sizes = {}) {
@@ -25,7 +25,7 @@ class Fingerprint {
     }
     return *this;
   }
-  /// A member of another layout counts with that one's fingerprint.
+  /// Adds the fingerprint of a nested layout.
   Fingerprint& nest(uint64_t inner) {
     nested_ += inner;
     return *this;
@@ -111,14 +111,13 @@ Fingerprint controller_status() {
   return f;
 }
 
-/// The layouts are a promise to everybody who speaks them. The literals are those of the first release; a change here
-/// breaks every peer that is not rebuilt.
-void layouts_are_the_ones_promised(void**) {
+/// The literals are the fingerprints of the first release. A changed layout breaks every peer that is not rebuilt.
+void layouts_have_the_published_fingerprints(void**) {
   const struct {
     const char* type;
     int64_t generated;
     uint64_t derived;
-    uint64_t promised;
+    uint64_t published;
   } types[] = {
       {"target_t", sidestep::target_t::getHash(), target().value(), 0x635ec8698d1164cd},
       {"obstacle_t", sidestep::obstacle_t::getHash(), obstacle().value(), 0xf1715a54f3799d54},
@@ -131,11 +130,11 @@ void layouts_are_the_ones_promised(void**) {
   for (const auto& type : types) {
     const auto generated = static_cast<uint64_t>(type.generated);
     check(generated == type.derived, "%s: %016lx, derived %016lx", type.type, generated, type.derived);
-    check(generated == type.promised, "%s: %016lx, promised %016lx", type.type, generated, type.promised);
+    check(generated == type.published, "%s: %016lx, published %016lx", type.type, generated, type.published);
   }
 }
 
-void names_and_numbers_on_the_wire_are_those_of_the_firmware(void**) {
+void constants_on_the_wire_equal_those_of_the_firmware(void**) {
   using Status = sidestep::controller_status_t;
   using sidestep::Fault;
   using sidestep::Mode;
@@ -164,8 +163,8 @@ void names_and_numbers_on_the_wire_are_those_of_the_firmware(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(layouts_are_the_ones_promised),
-      cmocka_unit_test(names_and_numbers_on_the_wire_are_those_of_the_firmware),
+      cmocka_unit_test(layouts_have_the_published_fingerprints),
+      cmocka_unit_test(constants_on_the_wire_equal_those_of_the_firmware),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
