@@ -82,7 +82,7 @@ void read_times(YamlSection& section, Scenario& scenario) {
   }
 }
 
-// The keys that every arm has; the obstacles in the scenario are complete already.
+// The keys of one arm. The keys that arms share have been read into `scenario` before.
 void read_arm(YamlSection& section, Scenario& scenario) {
   scenario.robot = read_robot(section.section("robot"), scenario.file);
   scenario.controller_config = section.text("config");
@@ -114,21 +114,21 @@ std::vector<Scenario> read_arms(YamlSection& section, const Scenario& common) {
 }  // namespace
 
 std::vector<Scenario> load_scenario(const std::string& file) {
-  YamlSection section = YamlSection::of_file(file);
+  YamlSection root = YamlSection::of_file(file);
   Scenario scenario;
   scenario.file = file;
-  scenario.title = section.text("title");
-  read_times(section, scenario);
-  if (section.has("sensing")) scenario.sensing = read_sensing(section.section("sensing"));
-  scenario.world.obstacles = read_obstacles(section);
-  if (section.has("expect")) scenario.expect = read_expectations(section.section("expect"));
-  if (section.has("published")) scenario.published = read_published(section.section("published"));
+  scenario.title = root.text("title");
+  read_times(root, scenario);
+  if (root.has("sensing")) scenario.sensing = read_sensing(root.section("sensing"));
+  scenario.world.obstacles = read_obstacles(root);
+  if (root.has("expect")) scenario.expect = read_expectations(root.section("expect"));
+  if (root.has("published")) scenario.published = read_published(root.section("published"));
   std::vector<Scenario> arms{scenario};
-  if (section.has("arms"))
-    arms = read_arms(section, scenario);
+  if (root.has("arms"))
+    arms = read_arms(root, scenario);
   else
-    read_arm(section, arms.front());
-  section.finish();
+    read_arm(root, arms.front());
+  root.finish();
   return arms;
 }
 

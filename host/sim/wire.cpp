@@ -16,8 +16,12 @@
 namespace sidestep::sim {
 namespace {
 
+static_assert(static_cast<int>(Mode::kWait) == controller_status_t::WAIT);
+static_assert(static_cast<int>(Mode::kHold) == controller_status_t::HOLD);
 static_assert(static_cast<int>(Mode::kTrack) == controller_status_t::TRACK);
+static_assert(static_cast<int>(Mode::kBrake) == controller_status_t::BRAKE);
 static_assert(static_cast<int>(Mode::kFault) == controller_status_t::FAULT);
+static_assert(static_cast<int>(Shape::kSphere) == obstacle_t::SPHERE);
 static_assert(static_cast<int>(Shape::kCapsule) == obstacle_t::CAPSULE);
 static_assert(static_cast<int>(Shape::kBox) == obstacle_t::BOX);
 
