@@ -48,7 +48,7 @@ void declare(CLI::App& app, Options& options) {
       ->type_name("SECONDS");
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.footer(
-      "Exit code: 0 the scenario's expectations held, 1 broken, 2 bad arguments or files, 3 controller missing or lost,\n"
+      "Exit code: 0 all expectations held, 1 one was broken, 2 bad arguments or files, 3 controller missing or lost,\n"
       "130 interrupted.");
 }
 

@@ -235,7 +235,7 @@ void send_hostile(StandIn& controller, const std::string& channel, std::vector<u
   }
 }
 
-/// Where the only text of the encoded message that is this letter has its length.
+/// Offset of the length of the text that consists of this letter; all numbers of the message are 0.
 size_t length_of_text_at(const std::vector<uint8_t>& data, char letter) {
   constexpr size_t kHash = 8, kLength = 4;
   return static_cast<size_t>(std::find(data.begin() + kHash, data.end(), letter) - data.begin()) - kLength;
