@@ -39,8 +39,8 @@ class Arm::Builder {
       check(*link->parent_joint);
       chain_.push_back(link);
     }
-    model_->root_link_->inertial.reset();  // KDL has no place for it and would warn
-    if (!kdl_parser::treeFromUrdfModel(*model_, tree_)) fail("KDL cannot take it over");
+    model_->root_link_->inertial.reset();  // KDL supports no inertia of the root and would warn
+    if (!kdl_parser::treeFromUrdfModel(*model_, tree_)) fail("KDL cannot convert it");
     KDL::Frame base_from_top;
     const urdf::Link* top = base_link_;
     for (; is_fixed(*top); top = top->getParent().get()) {
@@ -49,7 +49,7 @@ class Arm::Builder {
     add(*top, -1, top == base_link_);
     arm_.bodies_.front().base_from_body = base_from_top;
     if (arm_.joints_ < 1) fail(fmt::format("no joint between '{}' and '{}'", base, tip));
-    // Every chain link was added, the tip among them.
+    // add() has added every link of the chain, hence the tip.
     const auto is_tip = [&](const Body& body) { return body.segment.getName() == tip; };
     const auto tool = std::find_if(arm_.bodies_.begin(), arm_.bodies_.end(), is_tip);
     arm_.tool_body_ = static_cast<int>(tool - arm_.bodies_.begin());
@@ -68,7 +68,8 @@ class Arm::Builder {
 
   bool on_chain(const urdf::Link& link) const { return std::count(chain_.begin(), chain_.end(), &link) > 0; }
 
-  // Of the arm are the base and all below it; what it stands on is there as far as it is fixed.
+  // Adds a link and the links below it. Outside of the arm (the base and all links below it) only rigidly attached
+  // links count, because the positions of joints below the base are not available.
   void add(const urdf::Link& link, int parent, bool of_arm) {
     const int index = static_cast<int>(arm_.bodies_.size());
     Body body{segment_of(link), parent, -1, parent >= 0 && arm_.bodies_[parent].moving, KDL::Frame::Identity()};
@@ -144,7 +145,7 @@ class Arm::Builder {
   KDL::Tree tree_;
   urdf::ModelInterfaceSharedPtr model_;
   const urdf::Link* base_link_ = nullptr;
-  std::vector<const urdf::Link*> chain_;  // tip first, without the base
+  std::vector<const urdf::Link*> chain_;  ///< tip first, without the base
 };
 
 Arm::Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,

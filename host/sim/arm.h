@@ -10,38 +10,40 @@
 
 namespace sidestep::sim {
 
-/// One collision shape of the arm, placed by Arm::place().
+/// One collision shape of the arm. Arm::place() computes its pose.
 struct ArmPart {
   std::string link;
   Solid solid;
-  bool moving = false;  ///< a joint of the chain moves it
+  bool moving = false;  ///< true when a joint of the chain moves it
   Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
 };
 
-/// Where a joint turns, base frame.
+/// The axis of a joint, base frame.
 struct JointAxis {
   Eigen::Vector3d origin_m;   ///< a point of the axis
   Eigen::Vector3d direction;  ///< unit
 };
 
-/// The arm as its URDF describes it: forward kinematics and collision shapes of the links from base to tip, of what
-/// hangs on them (fingers), joints off the chain at 0, and of all that the base is rigidly attached to. Poses are in
-/// the frame of the base link.
+/// The arm as its URDF describes it: forward kinematics and collision shapes. The links are those from base to tip,
+/// those below them (such as fingers; joints off the chain are at 0) and those that the base is rigidly attached to.
+/// Poses are in the frame of the base link. Independent of the kinematics of the controller.
 class Arm {
  public:
-  /// Throws std::runtime_error, one line naming the file, when the URDF cannot be read, base and tip are no chain of 1
-  /// to kMaxJoints revolute, continuous or prismatic joints, or a shape is not a cylinder, sphere, box or readable
-  /// mesh (looked for on package_path, too: firmware/model/load/mesh.h).
+  /// Throws std::runtime_error, one line that names the file, when the URDF cannot be read, when base and tip do not
+  /// bound a chain of 1 to kMaxJoints revolute, continuous or prismatic joints, or when a shape is not a cylinder,
+  /// sphere, box or readable mesh (search path of meshes: firmware/model/load/mesh.h).
   Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
       const std::vector<std::string>& package_path = {});
 
   int joints() const { return joints_; }
+
+  /// Computes the poses of all parts and of the tool in this configuration.
   void place(const JointVector& q_rad);
 
   const std::vector<ArmPart>& parts() const { return parts_; }
   const Eigen::Isometry3d& base_from_tool() const { return base_from_tool_; }
 
-  /// Of all joints of the chain, base first.
+  /// Axes of all joints of the chain, base first.
   std::vector<JointAxis> axes() const;
 
  private:

@@ -1,77 +1,78 @@
-
 #include "host/sim/clock.h"
-#include "host/sim/play.h"
+#include "host/sim/simulation.h"
 
 namespace sidestep::sim {
 namespace {
 
-constexpr int64_t kFirstUtime = 1'000'000;  // zero often means "never"
-constexpr int64_t kRepeatUs = 100'000;      // while no controller answers
-// Several controllers begin together, whichever came first and whenever: what they heard before is too old for all.
-constexpr int64_t kTogetherUtime = 1'000'000'000;
+constexpr int64_t kFirstUtime_us = 1'000'000;  // not 0, which often means "never"
+constexpr int64_t kRepeat_us = 100'000;        // interval of repetitions until the controller answers
+// Several controllers start together at this time, whatever their order of arrival. It is so much later than the
+// messages before it that these are too old for all controllers.
+constexpr int64_t kCommonStart_us = 1'000'000'000;
 
 struct Reply {
   Command command;
   Status status;
 };
 
-// The arm's command with this utime and its first status behind it. Answers to earlier repetitions are passed over.
-std::optional<Reply> reply_to(size_t arm, int64_t utime, int64_t patience_us, Bus& bus,
+/// The arm's command with this utime and the first status after it. Replies to earlier repetitions are skipped.
+std::optional<Reply> reply_to(size_t arm, int64_t utime, int64_t patience_us, SimWire& wire,
                               const std::atomic<bool>& interrupted) {
   std::optional<Command> command;
   const int64_t end_us = monotonic_us() + patience_us;
   for (int64_t left_us = patience_us; left_us > 0 && !interrupted; left_us = end_us - monotonic_us()) {
-    const std::optional<Heard> heard = bus.next(left_us);
-    if (!heard || heard->arm != arm) continue;
-    if (const auto* status = std::get_if<Status>(&heard->answer)) {
+    const std::optional<ReceivedMessage> received = wire.next(left_us);
+    if (!received || received->arm != arm) continue;
+    if (const auto* status = std::get_if<Status>(&received->message)) {
       if (command) return Reply{*command, *status};
-    } else if (std::get<Command>(heard->answer).utime == utime) {
-      command = std::get<Command>(heard->answer);
+    } else if (std::get<Command>(received->message).utime == utime) {
+      command = std::get<Command>(received->message);
     }
   }
   return {};
 }
 
-// One period of one arm. Returns whether its controller answered, or never has.
-bool exchange(size_t arm, Run& run, int64_t utime, Bus& bus, const std::atomic<bool>& interrupted) {
+/// One period of one arm. Returns false when the controller has answered before, but not in this period.
+bool exchange(size_t arm, Run& run, int64_t utime, SimWire& wire, const std::atomic<bool>& interrupted) {
   const bool answered = run.status().has_value();
-  bus.publish(arm, run.world(), utime);
-  bus.publish(arm, run.plant.q_rad(), run.plant.qd_radps(), utime);
+  wire.publish(arm, run.world(), utime);
+  wire.publish(arm, run.plant.q_rad(), run.plant.qd_radps(), utime);
   run.measure();
-  const auto reply = reply_to(arm, utime, answered ? kLostAfterUs : kRepeatUs, bus, interrupted);
+  const auto reply = reply_to(arm, utime, answered ? kLostAfter_us : kRepeat_us, wire, interrupted);
   if (!reply) return !answered;
-  run.take(reply->command);
-  run.take(reply->status);
+  run.receive(reply->command);
+  run.receive(reply->status);
   return true;
 }
 
 }  // namespace
 
-End run_lockstep(Play& play, Bus& bus, double patience_s, const std::atomic<bool>& interrupted) {
-  const int64_t period_us = play.scenario().period_us;
+Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, const std::atomic<bool>& interrupted) {
+  const int64_t period_us = simulation.scenario().period_us;
   const auto patience_us = static_cast<int64_t>(patience_s * 1e6);
   const int64_t give_up_us = monotonic_us() + patience_us;
-  int64_t first_answered = 0;
-  for (int64_t utime = kFirstUtime;; utime += period_us) {
-    if (!play.tracked()) play.show_waiting();
-    for (size_t arm = 0; arm < play.runs.size(); ++arm) {
-      if (play.runs[arm].status() && !play.answered()) continue;  // it stands still until all are there
-      const bool there = exchange(arm, play.runs[arm], utime, bus, interrupted);
-      if (interrupted) return End::kInterrupted;
-      if (!there) return End::kLost;
+  int64_t first_answered_us = 0;
+  for (int64_t utime = kFirstUtime_us;; utime += period_us) {
+    if (!simulation.tracked()) simulation.show_waiting();
+    for (size_t arm = 0; arm < simulation.runs.size(); ++arm) {
+      // An arm whose controller has answered pauses until all controllers have.
+      if (simulation.runs[arm].status() && !simulation.answered()) continue;
+      const bool connected = exchange(arm, simulation.runs[arm], utime, wire, interrupted);
+      if (interrupted) return Outcome::kInterrupted;
+      if (!connected) return Outcome::kLost;
     }
-    if (!play.answered()) {
-      if (monotonic_us() > give_up_us) return End::kNeverTracked;
+    if (!simulation.answered()) {
+      if (monotonic_us() > give_up_us) return Outcome::kNeverTracked;
       continue;
     }
-    if (first_answered == 0) {
-      if (play.runs.size() > 1) utime = kTogetherUtime;
-      first_answered = utime;
+    if (first_answered_us == 0) {
+      if (simulation.runs.size() > 1) utime = kCommonStart_us;
+      first_answered_us = utime;
     }
-    if (play.tracked() || play.tracking()) play.record();
-    if (play.complete()) return End::kDone;
-    if (!play.tracked() && utime - first_answered > patience_us) return End::kNeverTracked;
-    for (Run& run : play.runs) run.plant.advance(period_us);
+    if (simulation.tracked() || simulation.tracking()) simulation.record();
+    if (simulation.complete()) return Outcome::kDone;
+    if (!simulation.tracked() && utime - first_answered_us > patience_us) return Outcome::kNeverTracked;
+    for (Run& run : simulation.runs) run.plant.advance(period_us);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "host/sim/play.h"
+#include "host/sim/simulation.h"
 
 namespace {
 
@@ -17,7 +17,7 @@ enum ExitCode { kHeld = 0, kBroken = 1, kBadInput = 2, kNoController = 3, kInter
 
 std::atomic<bool> interrupted{false};
 
-/// CLI11's ranges let nan through.
+/// CLI11's ranges accept nan.
 const CLI::Validator kNumber(
     [](const std::string& text) { return std::isnan(std::strtod(text.c_str(), nullptr)) ? "is not a number" : ""; },
     "");
@@ -30,86 +30,86 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--scenario", options.scenario, "what to play, such as paper-c.yaml")->required()->type_name("FILE");
-  app.add_flag(
-      "--lockstep", options.lockstep,
-      "play on the arm's clock: deterministic, as fast as both processes can go (controller: --lockstep, too)");
+  app.add_option("--scenario", options.scenario, "scenario file, such as paper-c.yaml")->required()->type_name("FILE");
+  app.add_flag("--lockstep", options.lockstep,
+               "run on the arm's clock: deterministic, as fast as possible (the controller also needs --lockstep)");
   app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)")
       ->type_name("URL");
-  app.add_option("--log", options.log_file, "keep all messages in this lcm-logger log")->type_name("FILE");
-  app.add_option("--csv", options.csv_file,
-                 "one row per control period into this file; of several arms into one with the arm's name before its "
-                 "suffix each")
+  app.add_option("--log", options.log_file, "write all messages to this log, in lcm-logger's format")
       ->type_name("FILE");
-  app.add_option("--wait", options.patience_s, "give up when the controller does not track within this time, s")
+  app.add_option("--csv", options.csv_file,
+                 "write one row per control period to this file; with several arms one file each, with the arm's name "
+                 "before the suffix")
+      ->type_name("FILE");
+  app.add_option("--wait", options.patience_s, "exit when the controller does not track within this time, s")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86400.0))
       ->check(kNumber)
       ->type_name("SECONDS");
-  app.add_flag("--quiet", options.quiet, "no live line");
+  app.add_flag("--quiet", options.quiet, "no progress line");
   app.footer(
-      "Exit code: 0 the scenario's expectations held, 1 broken, 2 bad arguments or files, 3 no controller, or lost,\n"
+      "Exit code: 0 all expectations held, 1 one was broken, 2 bad arguments or files, 3 controller missing or lost,\n"
       "130 interrupted.");
 }
 
-// Prints the figures of one arm; returns how many expectations are broken.
-size_t tell(const Run& run, bool judged) {
+// Prints the figures of one arm; returns the number of broken expectations. These are checked only for a complete run.
+size_t print_results(const Run& run, bool complete) {
   if (run.tracked()) fmt::print("{}", run.summary().text(run.scenario()));
   if (run.plant.refused() > 0) fmt::print("  refused commands          {}\n", run.plant.refused());
-  if (!judged) return 0;
+  if (!complete) return 0;
   const auto broken = run.summary().broken(run.scenario().expect);
   for (const std::string& line : broken) fmt::print("  BROKEN {}\n", line);
   return broken.size();
 }
 
-// Says how the play ended, and returns the exit code.
-int conclude(End end, const Play& play, const Bus& bus) {
+// Prints the outcome and returns the exit code.
+int conclude(Outcome outcome, const Simulation& simulation, const SimWire& wire) {
   size_t broken = 0;
-  for (const Run& run : play.runs) broken += tell(run, end == End::kDone);
-  if (bus.malformed() > 0) fmt::print("  malformed messages        {}\n", bus.malformed());
-  if (!bus.log_good()) fmt::print(stderr, "sim: --log: could not be written completely\n");
-  switch (end) {
-    case End::kInterrupted:
+  for (const Run& run : simulation.runs) broken += print_results(run, outcome == Outcome::kDone);
+  if (wire.malformed() > 0) fmt::print("  malformed messages        {}\n", wire.malformed());
+  if (!wire.log_good()) fmt::print(stderr, "sim: --log: could not be written completely\n");
+  switch (outcome) {
+    case Outcome::kInterrupted:
       return kInterruptedBySignal;
-    case End::kLost:
-      fmt::print(stderr, "sim: the controller is lost: no answer for 5 s\n");
+    case Outcome::kLost:
+      fmt::print(stderr, "sim: the controller is lost: no message for 5 s\n");
       return kNoController;
-    case End::kNeverTracked:
-      fmt::print(stderr, "sim: gave up waiting for {}\n", play.waits_for());
+    case Outcome::kNeverTracked:
+      fmt::print(stderr, "sim: timed out waiting for {}\n", simulation.waits_for());
       return kNoController;
-    case End::kDone:
+    case Outcome::kDone:
       break;
   }
   return broken == 0 ? kHeld : kBroken;
 }
 
-// run.csv of the arm left is run-left.csv.
+// With several arms: run.csv becomes run-left.csv for the arm `left`.
 std::string csv_file_of(const Scenario& scenario, const std::filesystem::path& file) {
   if (file.empty() || scenario.arm.empty()) return file;
   return file.parent_path() / (file.stem().string() + '-' + scenario.arm + file.extension().string());
 }
 
-int play(const Options& options) {
+int simulate(const Options& options) {
   std::vector<Run> runs;
-  std::vector<Channels> channels;
+  std::vector<sidestep::Channels> channels;
   for (const Scenario& scenario : load_scenario(options.scenario)) {
     runs.emplace_back(scenario, csv_file_of(scenario, options.csv_file));
     channels.push_back(scenario.channels);
   }
-  Bus bus(options.lcm_url, options.log_file, channels);
-  Play play(std::move(runs), Live(options.quiet, options.lockstep));
+  SimWire wire(options.lcm_url, options.log_file, channels);
+  Simulation simulation(std::move(runs), ProgressLine(options.quiet, options.lockstep));
   const auto loop = options.lockstep ? run_lockstep : run_realtime;
-  const End end = loop(play, bus, options.patience_s, interrupted);
-  play.end_live();
-  const int exit_code = conclude(end, play, bus);
-  for (Run& run : play.runs) run.close_csv();
+  const Outcome outcome = loop(simulation, wire, options.patience_s, interrupted);
+  simulation.end_progress();
+  const int exit_code = conclude(outcome, simulation, wire);
+  for (Run& run : simulation.runs) run.close_csv();
   return exit_code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sidestep's simulator: plant, world and judge for a controller on the other end of LCM.");
+  CLI::App app("Sidestep's simulator: plant, world and independent measurement for a controller connected by LCM.");
   Options options;
   declare(app, options);
   try {
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {
-    return play(options);
+    return simulate(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "sim: {}\n", error.what());
     return kBadInput;

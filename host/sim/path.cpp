@@ -4,7 +4,7 @@
 
 namespace sidestep::sim {
 
-Waypoint along(const Path& path, double t_s) {
+Waypoint waypoint_at(const Path& path, double t_s) {
   const auto is_before = [](double time_s, const Waypoint& waypoint) { return time_s < waypoint.t_s; };
   const auto to = std::upper_bound(path.begin(), path.end(), t_s, is_before);
   const Waypoint& from = to == path.begin() ? path.front() : *(to - 1);

@@ -5,7 +5,7 @@
 
 namespace sidestep::sim {
 
-/// Where something is at one time, and how fast. Base frame.
+/// Position and velocity at one time, base frame.
 struct Waypoint {
   double t_s = 0.0;
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
@@ -15,8 +15,8 @@ struct Waypoint {
 /// At least one waypoint, times increasing.
 using Path = std::vector<Waypoint>;
 
-/// The path at time t_s: between two waypoints the cubic with their positions and velocities (Hermite), the velocity
-/// being its derivative; before the first and after the last the velocity is constant.
-Waypoint along(const Path& path, double t_s);
+/// Position and velocity at time t_s. Between two waypoints: the cubic with their positions and velocities (Hermite)
+/// and its derivative. Before the first and after the last waypoint the velocity is constant.
+Waypoint waypoint_at(const Path& path, double t_s);
 
 }  // namespace sidestep::sim

@@ -7,8 +7,8 @@
 
 namespace sidestep::sim {
 
-/// What drives the joints. `ideal` takes a velocity at once; `servo` is a velocity servo that follows with a
-/// first-order lag, after a latency, within limits on speed and acceleration.
+/// Model of the joint drives. `ideal` reaches a commanded velocity at once. `servo` follows it after a latency, with a
+/// first-order lag and within limits on speed and acceleration.
 struct PlantSpec {
   enum class Kind { kIdeal, kServo };
   Kind kind = Kind::kIdeal;
@@ -18,20 +18,20 @@ struct PlantSpec {
   JointVector acceleration_limit_radps2;
 };
 
-/// The arm's joints under velocity commands, starting at rest. Motion between commands is integrated in closed form:
-/// the result does not depend on how the time is cut into steps.
+/// The arm's joints under velocity commands, at rest at the start. Motion between commands is integrated in closed
+/// form: the result does not depend on the length of the time steps.
 class Plant {
  public:
-  /// Without a new command for this long the plant stops by itself, as real drives do.
-  static constexpr int64_t kWatchdogUs = 50'000;
+  /// Without a new command for this time the plant stops, as real drives do.
+  static constexpr int64_t kWatchdog_us = 50'000;
 
   Plant(const PlantSpec& spec, const JointVector& start_rad);
 
-  /// No drive takes a command beyond this.
-  static constexpr double kAbsurdRadps = 1000.0;
+  /// Commands beyond this speed are refused.
+  static constexpr double kImplausible_radps = 1000.0;
 
-  /// A velocity wanted from now (servo: from now + latency) on. A command of the wrong size, or with a value that is
-  /// not finite or absurd, is refused and counted: returns false.
+  /// Commands a velocity, valid from now on (servo: from now + latency on). A command of the wrong size or with a value
+  /// that is not finite or beyond kImplausible_radps is refused and counted: returns false.
   bool command(const Eigen::Ref<const Eigen::VectorXd>& qd_radps);
 
   void advance(int64_t dt_us);
@@ -47,14 +47,14 @@ class Plant {
     JointVector qd_radps;
   };
 
-  void take_due();
-  void glide(double dt_s);
+  void apply_due();
+  void integrate(double dt_s);
 
   PlantSpec spec_;
   int64_t latency_us_ = 0;
   int64_t now_us_ = 0;
-  int64_t stop_us_;  ///< when the watchdog strikes
-  JointVector q_rad_, qd_radps_, wanted_radps_, last_command_radps_;
+  int64_t stop_us_;  ///< when the watchdog stops the plant
+  JointVector q_rad_, qd_radps_, demand_radps_, last_command_radps_;
   std::deque<Pending> pending_;
   int64_t refused_ = 0;
 };

@@ -45,7 +45,7 @@ std::string header(int joints, int obstacles) {
 
 }  // namespace
 
-void judge(Row& row, const Truth& truth) {
+void evaluate(Row& row, const Truth& truth) {
   row.tool_m = truth.tool_m();
   row.target_distance_m = (row.world.target.motion.position_m - row.tool_m).norm();
   row.nearest = truth.nearest(row.world.all());

@@ -3,15 +3,15 @@
 #include <fstream>
 #include <string>
 
-#include "host/sim/answer.h"
+#include "host/sim/controller_message.h"
 #include "host/sim/scenario.h"
 #include "host/sim/truth.h"
 
 namespace sidestep::sim {
 
-/// What is known of one control period, at its start.
+/// The state at the start of one control period.
 struct Row {
-  std::string arm;  ///< its name among several
+  std::string arm;  ///< name among several arms
   double t_s = 0.0;
   JointVector q_rad, qd_radps;  ///< measured
   JointVector command_radps;    ///< for the coming period
@@ -24,8 +24,8 @@ struct Row {
   double neighbour_m = kNothingNear;  ///< clearance to the links of other arms
 };
 
-/// Fills in what follows from the joints, the world and the truth, which is at the row's joints.
-void judge(Row& row, const Truth& truth);
+/// Computes the tool position and the distances of the row. The truth must be in the configuration of the row.
+void evaluate(Row& row, const Truth& truth);
 
 /// One line per control period: time, joints, tool, target, distances, obstacles, controller; 17 significant digits.
 /// The columns are named in the first line. cycle_time_s is the only one that differs between two equal lockstep runs.
@@ -34,7 +34,7 @@ class CsvFile {
   /// Throws std::runtime_error when the file cannot be written.
   CsvFile(const std::string& file, int joints, int obstacles);
 
-  /// The truth must be at the row's joints.
+  /// The truth must be in the configuration of the row.
   void write(const Row& row, const Truth& truth);
 
   /// Throws std::runtime_error when something could not be written.

@@ -20,10 +20,10 @@ Run::Run(const Scenario& scenario, const std::string& csv_file)
   if (!csv_file.empty()) csv_.emplace(csv_file, truth_.joints(), static_cast<int>(scenario.world.obstacles.size()));
 }
 
-void Run::take(const Answer& answer) {
-  if (const auto* status = std::get_if<Status>(&answer)) {
+void Run::receive(const ControllerMessage& message) {
+  if (const auto* status = std::get_if<Status>(&message)) {
     status_ = *status;
-  } else if (const auto& command = std::get<Command>(answer); plant.command(command.qd_radps)) {
+  } else if (const auto& command = std::get<Command>(message); plant.command(command.qd_radps)) {
     summary_.add(command);
   }
 }
@@ -40,7 +40,7 @@ void Run::record(const std::vector<Run>& all) {
   if (status_) row_.status = *status_;
   row_.world = world();
   row_.neighbour_m = neighbour_clearance_m(all);
-  judge(row_, truth_);
+  evaluate(row_, truth_);
   summary_.add(row_);
   if (csv_) csv_->write(row_, truth_);
 }
@@ -56,11 +56,11 @@ double Run::neighbour_clearance_m(const std::vector<Run>& all) const {
 }
 
 std::string Run::waits_for() const {
-  const std::string who = scenario_.arm.empty() ? "" : scenario_.arm + ": ";
+  const std::string name = scenario_.arm.empty() ? "" : scenario_.arm + ": ";
   if (!status_)
-    return fmt::format("{}a controller: nothing heard on {} and {} yet", who, scenario_.channels.arm_command,
+    return fmt::format("{}a controller: no message on {} and {} yet", name, scenario_.channels.arm_command,
                        scenario_.channels.controller_status);
-  return who + "the controller to track; it says: " + (status_->message.empty() ? "(nothing)" : status_->message);
+  return name + "the controller to track; its status: " + (status_->message.empty() ? "(empty)" : status_->message);
 }
 
 void Run::close_csv() {

@@ -9,38 +9,38 @@
 
 namespace sidestep::sim {
 
-/// One arm that plays its scenario: plant, world and what is kept of them. The world stands still until the first
-/// record().
+/// The simulation of one arm in its scenario: plant, world and results. Time is 0 until the first record().
 class Run {
  public:
   /// csv_file: empty for none. Throws std::runtime_error, one line, when the scenario does not fit its URDF or the file
   /// cannot be written.
   Run(const Scenario& scenario, const std::string& csv_file);
 
-  void take(const Answer& answer);
+  void receive(const ControllerMessage& message);
 
-  /// Since then t = 0 has passed.
+  /// True from t = 0 on.
   bool tracked() const { return summary_.rows() > 0; }
   bool complete() const { return summary_.rows() > scenario_.periods; }
 
-  /// The coming control period: its index, and the world at its start. Both stay at zero until the first record().
+  /// The coming control period: its index, and the world at its start.
   int period() const { return summary_.rows(); }
-  World world() const { return later(scenario_.world, scenario_.time_s(period())); }
+  World world() const { return advanced(scenario_.world, scenario_.time_s(period())); }
 
-  /// Notes where the arm is at the start of the coming period.
+  /// Stores the measured joints at the start of the coming period.
   void measure();
 
-  /// Keeps the coming period as it was measured and passes on to the next one. `all`: the arms that share the world,
-  /// each as it was measured; this is among them.
+  /// Records the coming period with the measured joints, and advances to the next one. `all`: the runs of all arms in
+  /// the world, each after measure(); contains this run.
   void record(const std::vector<Run>& all);
 
+  /// For people: why t = 0 has not come yet.
   std::string waits_for() const;
   void close_csv();
 
   const Scenario& scenario() const { return scenario_; }
   const std::optional<Status>& status() const { return status_; }
   const Summary& summary() const { return summary_; }
-  const Row& row() const { return row_; }  ///< the last one kept
+  const Row& row() const { return row_; }  ///< of the last recorded period
 
   Plant plant;
 
@@ -51,7 +51,7 @@ class Run {
   Truth truth_;
   std::optional<CsvFile> csv_;
   Summary summary_;
-  std::optional<Status> status_;  ///< the last one
+  std::optional<Status> status_;  ///< the last one received
   Row row_;
 };
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/sim/place.h"
+#include "host/sim/arm_setup.h"
 #include "host/sim/plant.h"
 #include "host/sim/sensing.h"
 #include "host/sim/world.h"
@@ -12,13 +12,13 @@
 namespace sidestep::sim {
 
 struct RobotSource {
-  std::string urdf_file;  ///< as found, see load_scenario
+  std::string urdf_file;  ///< path of the file that was found, see load_scenario
   std::string base;
   std::string tip;
-  std::vector<std::string> package_path;  ///< of the controller's configuration
+  std::vector<std::string> package_path;  ///< from the controller's configuration
 };
 
-/// What must hold at the end of a run; what is absent is not judged.
+/// Bounds that must hold over a run; an absent one is not checked.
 struct Expectations {
   std::optional<double> final_distance_max_m;           ///< tool to target at the end
   std::optional<double> clearance_min_m;                ///< surface to surface
@@ -27,19 +27,19 @@ struct Expectations {
   std::optional<double> joint_acceleration_max_radps2;  ///< of the commands
 };
 
-/// Figures of the paper, carried for comparison.
+/// Figures of the paper, printed for comparison.
 struct Published {
   std::optional<double> final_distance_m;
   std::optional<double> axis_distance_m;
 };
 
-/// What one arm plays.
+/// The scenario of one arm.
 struct Scenario {
   std::string file;
-  std::string arm;  ///< its name among several; empty for one alone
+  std::string arm;  ///< name among several arms; empty for a single one
   std::string title;
   RobotSource robot;
-  std::string controller_config;  ///< the configuration the controller is meant to have
+  std::string controller_config;  ///< configuration file of the controller
   Channels channels;
   Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
   int64_t period_us = 10'000;
@@ -57,10 +57,11 @@ struct Scenario {
   double duration_s() const { return time_s(periods); }
 };
 
-/// Reads a scenario: of one arm, in its base frame, or of several, `arms`, that share duration, obstacles and
-/// expectations, in the world frame of their configurations. robot.urdf and config are looked for from the scenario's
-/// folder upwards (firmware/base/find_file.h). Throws std::runtime_error, one line naming file and key, for anything
-/// that is missing, unknown, of the wrong size, not finite or out of range.
+/// Reads a scenario file and returns one scenario per arm. The file of a single arm is in its base frame. In a file
+/// with the list `arms`, the arms share duration, obstacles and expectations, in the world frame of their
+/// configurations. The files robot.urdf and config are searched from the scenario's folder upwards
+/// (firmware/base/find_file.h). Throws std::runtime_error, one line that names file and key, when a value is missing,
+/// unknown, of the wrong size, not finite or out of range.
 std::vector<Scenario> load_scenario(const std::string& file);
 
 }  // namespace sidestep::sim

@@ -8,11 +8,11 @@
 
 namespace sidestep::sim {
 
-/// What becomes of the truth on its way to the controller in real time; in lockstep it arrives as it is.
+/// Noise and loss of the messages to the controller in real time. In lockstep all messages arrive unchanged.
 struct SensingSpec {
-  double joint_noise_rad = 0.0;   ///< standard deviation, each joint
-  double obstacle_noise_m = 0.0;  ///< likewise, each axis of an obstacle's position
-  double lost_share = 0.0;        ///< of all messages
+  double joint_noise_rad = 0.0;   ///< standard deviation, of each joint
+  double obstacle_noise_m = 0.0;  ///< standard deviation, of each coordinate of an obstacle
+  double lost_share = 0.0;        ///< share of the messages that are lost
   int seed = 1;
 };
 
@@ -20,7 +20,7 @@ class Sensing {
  public:
   explicit Sensing(const SensingSpec& spec) : spec_(spec), engine_(static_cast<unsigned>(spec.seed)) {}
 
-  /// As the controller is told, or nothing for a message that is lost.
+  /// The values with noise, as sent to the controller; nothing for a lost message.
   std::optional<JointVector> joints(JointVector q_rad);
   std::optional<Target> target(const Target& target);
   std::optional<std::vector<Obstacle>> obstacles(std::vector<Obstacle> obstacles);

@@ -16,7 +16,7 @@ struct Surface {
 
 namespace {
 
-constexpr double kTouching_m = 1e-12;  // FCL gives 1e-323 for spheres that cut a triangle
+constexpr double kTouching_m = 1e-12;  // FCL returns 1e-323 for a sphere that cuts a triangle
 
 using Geometry =
     std::variant<fcl::Sphered, fcl::Capsuled, fcl::Boxd, fcl::Cylinderd, const fcl::BVHModel<fcl::OBBRSSd>*>;
@@ -46,11 +46,11 @@ const fcl::CollisionGeometryd* pointer(const Geometry& geometry) {
   return std::visit(Address{}, geometry);
 }
 
-// Zero when touching or penetrating. FCL's own signed distance is not used: libccd's expanding polytope fails an
-// assertion or runs for seconds on aligned shapes, and is centimetres off on deep ones. Nor are plain distances by
-// libccd's GJK (an assertion when surfaces just touch). Spheres have closed forms; for other pairs FCL's own GJK is
-// exact to 1e-9 m, but stops too early for one of 500 pairs of boxes. That always gives too much, and in the other
-// order it stops elsewhere: hence the lesser.
+// Zero when touching or penetrating. FCL's signed distance is not used: libccd's expanding polytope fails an assertion
+// or runs for seconds on aligned shapes and has errors of centimetres on deep penetrations. Distances by libccd's GJK
+// are not used either: they fail an assertion when surfaces just touch. Spheres have closed forms. For other pairs
+// FCL's own GJK is exact to 1e-9 m, but for 1 of 500 pairs of boxes it stops too early, with a distance that is too
+// large. With the two solids swapped it stops at another point: hence the smaller of both distances.
 double gap_m(const Geometry& a, const Eigen::Isometry3d& base_from_a, const Geometry& b,
              const Eigen::Isometry3d& base_from_b) {
   fcl::DistanceRequestd request;
@@ -75,7 +75,7 @@ double depth_m(const Geometry& a, const Eigen::Isometry3d& base_from_a, const Ge
   return depth;
 }
 
-// Least value of a convex function on [low, high], by golden section.
+// Least value of a convex function on [low, high], by golden-section search.
 template <typename Function>
 double least_value(const Function& function, double low, double high) {
   const double golden = (std::sqrt(5.0) - 1.0) / 2.0;
@@ -93,7 +93,8 @@ double least_value(const Function& function, double low, double high) {
   return std::min(at_left, at_right);
 }
 
-// Along the axis of a capsule the signed distance of its sphere to a convex solid is a convex function.
+// Uses that the signed distance between a convex solid and the sphere at a point of the capsule's axis is a convex
+// function of that point.
 double capsule_distance_m(const Solid& other, const Eigen::Isometry3d& base_from_other, const Solid& capsule,
                           const Eigen::Isometry3d& base_from_capsule) {
   const Solid sphere{Shape::kSphere, {capsule.size_m.x(), 0.0, 0.0}};
@@ -145,7 +146,7 @@ double signed_distance_m(const Solid& a, const Eigen::Isometry3d& base_from_a, c
                          const Eigen::Isometry3d& base_from_b) {
   const Geometry a_geometry = geometry_of(a), b_geometry = geometry_of(b);
   const double gap = gap_m(a_geometry, base_from_a, b_geometry, base_from_b);
-  const bool boxes = a.shape == Shape::kBox && b.shape == Shape::kBox;  // the only pair whose gap can miss a contact
+  const bool boxes = a.shape == Shape::kBox && b.shape == Shape::kBox;  // the only pair with a gap > 0 in contact
   if (gap > kTouching_m && !boxes) return gap;
   if (b.shape == Shape::kCapsule) return capsule_distance_m(a, base_from_a, b, base_from_b);
   if (a.shape == Shape::kCapsule) return capsule_distance_m(b, base_from_b, a, base_from_a);

@@ -7,18 +7,18 @@
 namespace sidestep::sim {
 namespace {
 
-std::string beside(const std::optional<double>& published_m) {
+std::string paper_figure(const std::optional<double>& published_m) {
   return published_m ? fmt::format("   (paper: {:.4f} m)", *published_m) : "";
 }
 
-void at_most(std::vector<std::string>& broken, const char* name, const std::optional<double>& wanted, double got) {
-  if (wanted && !(got <= *wanted))
-    broken.push_back(fmt::format("{}: wanted at most {}, got {:.6g}", name, *wanted, got));
+void at_most(std::vector<std::string>& broken, const char* name, const std::optional<double>& bound, double value) {
+  if (bound && !(value <= *bound))
+    broken.push_back(fmt::format("{}: wanted at most {}, got {:.6g}", name, *bound, value));
 }
 
-void at_least(std::vector<std::string>& broken, const char* name, const std::optional<double>& wanted, double got) {
-  if (wanted && !(got >= *wanted))
-    broken.push_back(fmt::format("{}: wanted at least {}, got {:.6g}", name, *wanted, got));
+void at_least(std::vector<std::string>& broken, const char* name, const std::optional<double>& bound, double value) {
+  if (bound && !(value >= *bound))
+    broken.push_back(fmt::format("{}: wanted at least {}, got {:.6g}", name, *bound, value));
 }
 
 }  // namespace
@@ -41,10 +41,11 @@ void Summary::add(const Row& row) {
 
 void Summary::add(const Command& command) {
   const int64_t since_us = command.utime - previous_.utime;
-  // After such a pause the plant has stopped by itself.
-  const bool from_rest = previous_.qd_radps.size() != command.qd_radps.size() || since_us > Plant::kWatchdogUs;
+  // After a pause longer than the watchdog time the plant has stopped.
+  const bool from_rest = previous_.qd_radps.size() != command.qd_radps.size() || since_us > Plant::kWatchdog_us;
   if (from_rest) previous_.qd_radps = Eigen::VectorXd::Zero(command.qd_radps.size());
-  // Whole periods: in real time the controller's wake-ups jitter. One that is faster has periods of its own.
+  // Whole periods, because the wake-ups of a controller in real time jitter. A controller with a shorter period is
+  // measured by its own time stamps.
   const int64_t periods = from_rest ? 1 : (since_us + period_us_ / 2) / period_us_;
   const double change_radps = (command.qd_radps - previous_.qd_radps).cwiseAbs().maxCoeff();
   const int64_t time_us = periods > 0 ? periods * period_us_ : since_us > 0 ? since_us : period_us_;
@@ -70,9 +71,9 @@ std::string Summary::text(const Scenario& scenario) const {
   text += fmt::format("  min clearance             {:.4f} m   {}\n", clearance_m_, nearest_);
   if (neighbour_m_ < kNothingNear) text += fmt::format("  min clearance to arms     {:.4f} m\n", neighbour_m_);
   text += fmt::format("  min centre to axis        {:.4f} m{}\n", axis_distance_m_,
-                      beside(scenario.published.axis_distance_m));
+                      paper_figure(scenario.published.axis_distance_m));
   text += fmt::format("  final target distance     {:.6f} m{}\n", final_distance_m_,
-                      beside(scenario.published.final_distance_m));
+                      paper_figure(scenario.published.final_distance_m));
   text += fmt::format("  max joint speed           {:.4f} rad/s\n", joint_speed_radps_);
   text += fmt::format("  max command acceleration  {:.3f} rad/s2\n", joint_acceleration_radps2_);
   text += fmt::format("  cycles                    {} of {}, {} skipped\n", rows_, scenario.periods + 1, skipped);

@@ -14,13 +14,13 @@ class Summary {
 
   void add(const Row& row);
 
-  /// Every command as it arrives; times are of the controller's clock.
+  /// Each command in the order of arrival.
   void add(const Command& command);
 
-  /// One line per broken expectation: name, wanted, got. Only meaningful for a run that was played to its end.
+  /// One line per broken expectation: name, bound, value. Only meaningful for a complete run.
   std::vector<std::string> broken(const Expectations& expect) const;
 
-  /// Several lines for people, beside the figures of the paper where there are any.
+  /// Several lines for people, with the figures of the paper where the scenario has them.
   std::string text(const Scenario& scenario) const;
 
   int rows() const { return rows_; }
@@ -36,7 +36,7 @@ class Summary {
   double joint_speed_radps_ = 0.0;
   double joint_acceleration_radps2_ = 0.0;
   double cycle_time_total_s_ = 0.0, cycle_time_max_s_ = 0.0;
-  int64_t skipped_before_ = 0;  ///< when the run began
+  int64_t skipped_before_ = 0;  ///< t = 0
   Status last_;
   Command previous_;
 };

@@ -5,7 +5,7 @@
 namespace sidestep::sim {
 namespace {
 
-// Half the axis of a part, in its own frame.
+// Half the axis of a part, in its own frame (docstring of axis_distance_m).
 Eigen::Vector3d half_axis_m(const Solid& solid) {
   if (solid.shape == Shape::kSphere) return Eigen::Vector3d::Zero();
   int along = 2;
@@ -22,7 +22,7 @@ double distance_to_axis_m(const ArmPart& part, const Eigen::Vector3d& point_m) {
   return (offset_m - along * half_m).norm();
 }
 
-// What the distance of two surfaces can be at least: a mesh is in its bounding box, all else in a sphere.
+// Lower bound of the distance between the surfaces: from the bounding box of a mesh, else from bounding spheres.
 double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
   const Eigen::Vector3d offset_m = obstacle.motion.position_m - part.base_from_part.translation();
   double bound_m = offset_m.norm() - bounding_radius_m(part.solid);
@@ -38,7 +38,7 @@ double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
 Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, double within_m) const {
   Nearest best;
   best.clearance_m = within_m;
-  std::vector<std::pair<double, const ArmPart*>> candidates;  // most promising first
+  std::vector<std::pair<double, const ArmPart*>> candidates;  // smallest bound first
   for (size_t i = 0; i < obstacles.size(); ++i) {
     candidates.clear();
     for (const ArmPart& part : arm_.parts()) {

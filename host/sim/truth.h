@@ -18,26 +18,28 @@ struct Nearest {
   std::string link;
 };
 
-/// Independent judge of what happened: distances between the arm, as its URDF describes it, and obstacles.
+/// Distances between the arm, as its URDF describes it, and obstacles. Independent of the controller's kinematics and
+/// distances, which it checks.
 class Truth {
  public:
   explicit Truth(Arm arm) : arm_(std::move(arm)) {}
 
   const Arm& arm() const { return arm_; }
   int joints() const { return arm_.joints(); }
+  /// Moves the arm to this configuration, to which all results below refer.
   void place(const JointVector& q_rad) { arm_.place(q_rad); }
 
-  /// Base frame.
+  /// Position of the tool, base frame.
   Eigen::Vector3d tool_m() const { return arm_.base_from_tool().translation(); }
 
-  /// Over all links, also those that no joint moves; pairs that are not nearer than within_m do not count. The work
-  /// grows with the number of obstacles, most of which cost only a comparison of bounding volumes.
+  /// The closest pair of a link, moved by a joint or not, and an obstacle, among the pairs closer than within_m.
+  /// Most obstacles cost only a comparison of bounding volumes.
   Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const;
 
-  /// The links, each an obstacle where it is now, for another arm to keep clear of.
+  /// The links as obstacles at rest, in the base frame of another arm.
   std::vector<Obstacle> links(const Eigen::Isometry3d& other_from_base) const;
 
-  /// From one obstacle to the nearest link, as in nearest().
+  /// Clearance of one obstacle to the nearest link, as in nearest().
   double clearance_m(const Obstacle& obstacle) const { return nearest({obstacle}).clearance_m; }
 
   /// The paper's distance: from the centre of the obstacle to the axes of the moving links (paper-notes, "The arm").
@@ -45,7 +47,7 @@ class Truth {
   /// the longest edge; a sphere is its centre.
   double axis_distance_m(const Obstacle& obstacle) const;
 
-  /// The least of them, infinite without obstacles.
+  /// The smallest axis distance of the obstacles; infinite without obstacles.
   double axis_distance_m(const std::vector<Obstacle>& obstacles) const;
 
  private:

@@ -16,8 +16,12 @@
 namespace sidestep::sim {
 namespace {
 
+static_assert(static_cast<int>(Mode::kWait) == controller_status_t::WAIT);
+static_assert(static_cast<int>(Mode::kHold) == controller_status_t::HOLD);
 static_assert(static_cast<int>(Mode::kTrack) == controller_status_t::TRACK);
+static_assert(static_cast<int>(Mode::kBrake) == controller_status_t::BRAKE);
 static_assert(static_cast<int>(Mode::kFault) == controller_status_t::FAULT);
+static_assert(static_cast<int>(Shape::kSphere) == obstacle_t::SPHERE);
 static_assert(static_cast<int>(Shape::kCapsule) == obstacle_t::CAPSULE);
 static_assert(static_cast<int>(Shape::kBox) == obstacle_t::BOX);
 
@@ -65,20 +69,49 @@ int64_t int32_at(const uint8_t* bytes, int64_t at) {
                               uint32_t{bytes[at + 3]});
 }
 
-// The generated decoders believe the counts and lengths they find: the size has to fit them first.
+// The generated decoders trust the counts and lengths in a message. They must match its size before it is decoded.
+
+constexpr int64_t kLengthSize = 4;  // of the count of a list or the length of a text
+
 bool has_size_of_command(const uint8_t* bytes, int64_t size) {
-  constexpr int64_t kCountAt = 24, kHeader = kCountAt + 4;
-  return size >= kHeader && int32_at(bytes, kCountAt) >= 0 && size == kHeader + int32_at(bytes, kCountAt) * 16;
+  static const int64_t empty_size = joint_command_t{}.getEncodedSize();  // ends with the joint count
+  constexpr int64_t kJointSize = 2 * sizeof(double);
+  if (size < empty_size) return false;
+  const int64_t joints = int32_at(bytes, empty_size - kLengthSize);
+  return joints >= 0 && size == empty_size + joints * kJointSize;
+}
+
+/// Sizes of the fixed parts of controller_status_t around its two texts, bytes.
+struct StatusLayout {
+  int64_t before_link;  ///< up to the length of nearest_link
+  int64_t between;      ///< from the end of nearest_link to the length of message
+  int64_t after_message;
+};
+
+/// From the encoding of a status in which all numbers are 0 and each text is one known letter.
+StatusLayout status_layout() {
+  constexpr int64_t kHashSize = 8, kTextSize = 2;  // the letter and the terminating zero
+  controller_status_t status{};
+  status.nearest_link = "L";
+  status.message = "M";
+  std::vector<uint8_t> bytes(static_cast<size_t>(status.getEncodedSize()));
+  status.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const auto position_of = [&](char letter) {
+    return std::find(bytes.begin() + kHashSize, bytes.end(), static_cast<uint8_t>(letter)) - bytes.begin();
+  };
+  const int64_t link_at = position_of('L'), message_at = position_of('M');
+  return {link_at - kLengthSize, message_at - kLengthSize - (link_at + kTextSize),
+          static_cast<int64_t>(bytes.size()) - (message_at + kTextSize)};
 }
 
 bool has_size_of_status(const uint8_t* bytes, int64_t size) {
-  constexpr int64_t kLinkAt = 101, kBetweenTexts = 56, kAfterTexts = 201;  // the fixed fields around the two texts
-  if (size < kLinkAt + 4) return false;
-  const int64_t link = int32_at(bytes, kLinkAt);
-  const int64_t message_at = kLinkAt + 4 + link + kBetweenTexts;
-  if (link < 1 || size < message_at + 4) return false;
-  const int64_t message = int32_at(bytes, message_at);
-  return message >= 1 && size == message_at + 4 + message + kAfterTexts;
+  static const StatusLayout layout = status_layout();
+  if (size < layout.before_link + kLengthSize) return false;
+  const int64_t link_length = int32_at(bytes, layout.before_link);
+  const int64_t message_at = layout.before_link + kLengthSize + link_length + layout.between;
+  if (link_length < 1 || size < message_at + kLengthSize) return false;
+  const int64_t message_length = int32_at(bytes, message_at);
+  return message_length >= 1 && size == message_at + kLengthSize + message_length + layout.after_message;
 }
 
 std::optional<Command> decode_command(const uint8_t* bytes, int size) {
@@ -108,21 +141,21 @@ std::optional<Status> decode_status(const uint8_t* bytes, int size) {
 
 }  // namespace
 
-struct Bus::Wire {
-  // An ear for one arm.
-  struct Ear {
-    Wire* wire;
+struct SimWire::Network {
+  /// The channels of one arm's controller.
+  struct Subscription {
+    Network* network;
     size_t arm;
 
-    void take_command(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-      wire->take(buffer, channel, arm, decode_command);
+    void on_command(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      network->receive(buffer, channel, arm, decode_command);
     }
-    void take_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-      wire->take(buffer, channel, arm, decode_status);
+    void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      network->receive(buffer, channel, arm, decode_status);
     }
   };
 
-  Wire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
+  Network(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
       : lcm(url), channels(arms) {
     if (!lcm.good()) {
       throw std::runtime_error("--lcm-url: cannot open " + (url.empty() ? "LCM's default" : url) +
@@ -131,20 +164,23 @@ struct Bus::Wire {
     if (!log_file.empty()) log = std::make_unique<lcm::LogFile>(log_file, "w");
     if (log && !log->good()) throw std::runtime_error(log_file + ": cannot be written");
     for (size_t arm = 0; arm < channels.size(); ++arm) {
-      ears.push_back({this, arm});
-      Ear& ear = ears.back();
-      // A full queue refuses the newest message; this one holds 10 s and is emptied all the time.
-      lcm.subscribe(channels[arm].arm_command, &Ear::take_command, &ear)->setQueueCapacity(1000);
-      lcm.subscribe(channels[arm].controller_status, &Ear::take_status, &ear)->setQueueCapacity(1000);
+      subscriptions.push_back({this, arm});
+      Subscription& subscription = subscriptions.back();
+      // LCM drops the newest message when a queue is full. This one holds 10 s of messages.
+      constexpr int kQueueCapacity = 1000;
+      lcm.subscribe(channels[arm].arm_command, &Subscription::on_command, &subscription)
+          ->setQueueCapacity(kQueueCapacity);
+      lcm.subscribe(channels[arm].controller_status, &Subscription::on_status, &subscription)
+          ->setQueueCapacity(kQueueCapacity);
     }
   }
 
   template <typename Decode>
-  void take(const lcm::ReceiveBuffer* buffer, const std::string& channel, size_t arm, const Decode& decode) {
+  void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel, size_t arm, const Decode& decode) {
     const int size = static_cast<int>(buffer->data_size);
-    keep(channel, buffer->data, size);
+    write_log(channel, buffer->data, size);
     if (auto message = decode(static_cast<const uint8_t*>(buffer->data), size)) {
-      inbox = Heard{arm, std::move(*message)};
+      received = ReceivedMessage{arm, std::move(*message)};
     } else {
       ++malformed;
     }
@@ -157,11 +193,11 @@ struct Bus::Wire {
     bytes.resize(static_cast<size_t>(size));
     message.encode(bytes.data(), 0, size);
     lcm.publish(channel, bytes.data(), static_cast<unsigned>(size));
-    keep(channel, bytes.data(), size);
+    write_log(channel, bytes.data(), size);
   }
 
-  // Events carry the simulator's clock, not the wall's: the log of a lockstep run plays back at its own pace.
-  void keep(const std::string& channel, void* data, int size) {
+  // Time stamps are of the simulator's clock, so that a player plays the log of a lockstep run at the speed of the arm.
+  void write_log(const std::string& channel, void* data, int size) {
     if (!log || !log_good) return;
     lcm::LogEvent event;
     event.eventnum = 0;
@@ -174,56 +210,56 @@ struct Bus::Wire {
 
   lcm::LCM lcm;
   std::vector<Channels> channels;
-  std::deque<Ear> ears;  // they stay where they are
+  std::deque<Subscription> subscriptions;  ///< a deque: LCM keeps their addresses
   std::unique_ptr<lcm::LogFile> log;
   bool log_good = true;
-  int64_t clock_us = 0;  // of the last message sent
+  int64_t clock_us = 0;  ///< utime of the last message sent
   std::vector<uint8_t> bytes;
-  std::optional<Heard> inbox;
+  std::optional<ReceivedMessage> received;  ///< by the last lcm.handle()
   int64_t malformed = 0;
 };
 
-Bus::Bus(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
-    : wire_(std::make_unique<Wire>(url, log_file, arms)) {}
-Bus::~Bus() = default;
+SimWire::SimWire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
+    : network_(std::make_unique<Network>(url, log_file, arms)) {}
+SimWire::~SimWire() = default;
 
-void Bus::publish(size_t arm, const World& world, int64_t utime) {
+void SimWire::publish(size_t arm, const World& world, int64_t utime) {
   publish(arm, world.target, utime);
   publish(arm, world.obstacles, utime);
 }
 
-void Bus::publish(size_t arm, const Target& target, int64_t utime) {
-  wire_->publish(wire_->channels[arm].target, message_of(target, utime), utime);
+void SimWire::publish(size_t arm, const Target& target, int64_t utime) {
+  network_->publish(network_->channels[arm].target, message_of(target, utime), utime);
 }
 
-void Bus::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {
-  wire_->publish(wire_->channels[arm].obstacles, message_of(obstacles, utime), utime);
+void SimWire::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {
+  network_->publish(network_->channels[arm].obstacles, message_of(obstacles, utime), utime);
 }
 
-void Bus::publish(size_t arm, const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {
+void SimWire::publish(size_t arm, const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {
   joint_state_t message;
   message.utime = utime;
   message.num_joints = static_cast<int32_t>(q_rad.size());
   message.joint_position.assign(q_rad.data(), q_rad.data() + q_rad.size());
   message.joint_velocity.assign(qd_radps.data(), qd_radps.data() + qd_radps.size());
-  wire_->publish(wire_->channels[arm].arm_state, message, utime);
+  network_->publish(network_->channels[arm].arm_state, message, utime);
 }
 
-std::optional<Heard> Bus::next(int64_t wait_us) {
+std::optional<ReceivedMessage> SimWire::next(int64_t wait_us) {
   wait_us = std::clamp<int64_t>(wait_us, 0, 100'000);
   const timespec wait{0, static_cast<long>(wait_us * 1000)};
-  pollfd readable{wire_->lcm.getFileno(), POLLIN, 0};
-  wire_->inbox.reset();
-  if (ppoll(&readable, 1, &wait, nullptr) > 0) wire_->lcm.handle();
-  return std::move(wire_->inbox);
+  pollfd readable{network_->lcm.getFileno(), POLLIN, 0};
+  network_->received.reset();
+  if (ppoll(&readable, 1, &wait, nullptr) > 0) network_->lcm.handle();
+  return std::move(network_->received);
 }
 
-int64_t Bus::malformed() const {
-  return wire_->malformed;
+int64_t SimWire::malformed() const {
+  return network_->malformed;
 }
 
-bool Bus::log_good() const {
-  return wire_->log_good;
+bool SimWire::log_good() const {
+  return network_->log_good;
 }
 
 }  // namespace sidestep::sim

@@ -4,27 +4,27 @@
 #include <optional>
 #include <string>
 
-#include "host/sim/answer.h"
+#include "host/sim/arm_setup.h"
+#include "host/sim/controller_message.h"
 #include "host/sim/joints.h"
-#include "host/sim/place.h"
 #include "host/sim/world.h"
 
 namespace sidestep::sim {
 
-/// One message of the controller of an arm.
-struct Heard {
+/// One message from the controller of an arm.
+struct ReceivedMessage {
   size_t arm;
-  Answer answer;
+  ControllerMessage message;
 };
 
-/// The simulator's end of the wire: TARGET, OBSTACLES and ARM_STATE out, ARM_COMMAND and CONTROLLER_STATUS in, for each
-/// of its arms.
-class Bus {
+/// The simulator's LCM connection: sends TARGET, OBSTACLES and ARM_STATE, receives ARM_COMMAND and CONTROLLER_STATUS,
+/// for each of its arms.
+class SimWire {
  public:
-  /// url: of LCM, empty for LCM's default. log_file: where to keep all messages in lcm-logger's format, empty for
-  /// nowhere. Throws std::runtime_error when either cannot be opened.
-  Bus(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms);
-  ~Bus();
+  /// url: of LCM, empty for LCM's default. log_file: log of all messages in lcm-logger's format, empty for none. Throws
+  /// std::runtime_error when either cannot be opened.
+  SimWire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms);
+  ~SimWire();
 
   /// TARGET, then OBSTACLES.
   void publish(size_t arm, const World& world, int64_t utime);
@@ -33,17 +33,17 @@ class Bus {
   /// ARM_STATE.
   void publish(size_t arm, const JointVector& q_rad, const JointVector& qd_radps, int64_t utime);
 
-  /// The oldest message not yet taken; waits up to wait_us for one, but never longer than 0.1 s. Nothing on a time-out,
-  /// a signal, or a message that is none: that one is counted.
-  std::optional<Heard> next(int64_t wait_us);
+  /// The oldest message in the queue. Waits for one up to wait_us, at most 0.1 s. Returns nothing on a time-out, a
+  /// signal or a malformed message, which is counted.
+  std::optional<ReceivedMessage> next(int64_t wait_us);
 
   int64_t malformed() const;
   /// False once a message could not be written to the log.
   bool log_good() const;
 
  private:
-  struct Wire;
-  std::unique_ptr<Wire> wire_;
+  struct Network;
+  std::unique_ptr<Network> network_;
 };
 
 }  // namespace sidestep::sim

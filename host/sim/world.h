@@ -9,15 +9,15 @@
 
 namespace sidestep::sim {
 
-/// Pose of something that moves with constant velocities or, given a path, along it while it turns at a constant rate.
-/// Base frame, m, m/s, rad/s.
+/// Pose and velocity of a rigid body. Its velocity is constant or, with a path, follows the path; its angular velocity
+/// is constant. Base frame.
 struct Motion {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
-  std::shared_ptr<const Path> path;  ///< or null; shared by all copies
-  double path_s = 0.0;               ///< the present time on the path
+  std::shared_ptr<const Path> path;  ///< null: constant velocity; shared by all copies
+  double path_s = 0.0;               ///< current time on the path
 
   Eigen::Isometry3d base_from_body() const { return Eigen::Translation3d(position_m) * orientation; }
 };
@@ -33,21 +33,20 @@ struct Target {
   bool tracks_orientation = false;
 };
 
-/// All that the arm reaches for and keeps clear of, at one instant.
+/// Target and obstacles of an arm at one instant.
 struct World {
   Target target;
   std::vector<Obstacle> obstacles;
-  std::vector<Obstacle> surroundings;  ///< at rest; the controller knows them, nobody tells it
+  std::vector<Obstacle> surroundings;  ///< at rest; in the configuration of the controller, not in messages
 
   /// Obstacles, then surroundings.
   std::vector<Obstacle> all() const;
 };
 
-/// The world dt_s later: positions on their paths or straight on; the orientation follows the constant angular velocity
-/// exactly.
-World later(const World& now, double dt_s);
+/// The world after dt_s. Rotation by the constant angular velocity is exact.
+World advanced(const World& world, double dt_s);
 
-/// The same with target and obstacles in another frame, at rest against theirs.
-World seen_from(const Eigen::Isometry3d& there_from_here, const World& world);
+/// Target and obstacles, given in frame a, in frame b; the frames do not move against each other.
+World transformed(const Eigen::Isometry3d& b_from_a, const World& world);
 
 }  // namespace sidestep::sim

@@ -1,4 +1,4 @@
-// The loader of configurations; it runs in the repository's root, where it finds the URDF.
+// Fuzzes the configuration loader. Runs in the repository's root, because the loader reads the URDF.
 #include "firmware/io/config/config.h"
 #include "tests/fuzz/file.h"
 

@@ -2,21 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <map>
 
 #include "firmware/base/find_file.h"
-#include "firmware/io/config/config_section.h"
+#include "firmware/io/config/channel_section.h"
 #include "firmware/io/config/surroundings.h"
+#include "firmware/io/config/yaml_section.h"
 #include "firmware/model/load/self_pairs.h"
 
 namespace sidestep {
 namespace {
 
-void read_limits(Section limits, Arm& arm) {
-  limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps);
-  limits.per_joint("acceleration_radps2", arm.joints, arm.limits.acceleration_radps2);
-  limits.per_joint("lower_rad", arm.joints, arm.limits.lower_rad);
-  limits.per_joint("upper_rad", arm.joints, arm.limits.upper_rad);
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};  // check_limits() decides
+
+void read_limits(YamlSection limits, Arm& arm) {
+  limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps, kAnyNumber);
+  limits.per_joint("acceleration_radps2", arm.joints, arm.limits.acceleration_radps2, kAnyNumber);
+  limits.per_joint("lower_rad", arm.joints, arm.limits.lower_rad, kAnyNumber);
+  limits.per_joint("upper_rad", arm.joints, arm.limits.upper_rad, kAnyNumber);
   limits.finish();
   try {
     check_limits(arm);
@@ -25,7 +30,7 @@ void read_limits(Section limits, Arm& arm) {
   }
 }
 
-void read_paper(Section paper, PaperGains& gains) {
+void read_paper(YamlSection paper, PaperGains& gains) {
   paper.not_negative("k_pos_per_s2", gains.k_pos_per_s2);
   paper.not_negative("k_vel_per_s", gains.k_vel_per_s);
   paper.not_negative("k_rpos_m2ps2", gains.k_rpos_m2ps2);
@@ -49,7 +54,7 @@ void read_paper(Section paper, PaperGains& gains) {
   paper.finish();
 }
 
-void read_sidestep(Section sidestep, SidestepGains& gains) {
+void read_sidestep(YamlSection sidestep, SidestepGains& gains) {
   sidestep.positive("k_pos_per_s", gains.k_pos_per_s);
   sidestep.positive("k_ori_per_s", gains.k_ori_per_s);
   sidestep.not_negative("k_posture_per_s", gains.k_posture_per_s);
@@ -61,14 +66,14 @@ void read_sidestep(Section sidestep, SidestepGains& gains) {
   sidestep.finish();
 }
 
-void read_shield(Section section, ShieldSettings& shield) {
+void read_shield(YamlSection section, ShieldSettings& shield) {
   section.flag("enabled", shield.enabled);
   section.not_negative("hard_clearance_m", shield.hard_clearance_m);
   section.positive("hard_gain_per_s", shield.hard_gain_per_s);
   section.not_negative("pass_clearance_m", shield.pass_clearance_m);
   section.positive("pass_gain_per_s", shield.pass_gain_per_s);
   section.not_negative("pass_reaction_s", shield.pass_reaction_s);
-  section.number("pass_horizon_s", shield.pass_horizon_s, 0.0, 10.0);
+  section.number("pass_horizon_s", shield.pass_horizon_s, {0.0, 10.0});
   section.not_negative("comfort_clearance_m", shield.comfort_clearance_m);
   section.positive("comfort_gain_per_s", shield.comfort_gain_per_s);
   section.positive("comfort_weight", shield.comfort_weight);
@@ -84,61 +89,41 @@ void read_shield(Section section, ShieldSettings& shield) {
   section.finish();
 }
 
-void read_timeouts(Section section, Timeouts& timeouts) {
+void read_timeouts(YamlSection section, Timeouts& timeouts) {
   section.renamed("old_place_s", "coast_s");
   section.positive("target_s", timeouts.target_s);
   section.positive("obstacles_s", timeouts.obstacles_s);
   section.positive("arm_state_s", timeouts.arm_state_s);
   section.positive("arm_state_lost_s", timeouts.arm_state_lost_s);
   section.not_negative("consistent_s", timeouts.consistent_s);
-  section.number("coast_s", timeouts.coast_s, 0.0, 10.0);
+  section.number("coast_s", timeouts.coast_s, {0.0, 10.0});
   if (timeouts.arm_state_lost_s < timeouts.arm_state_s)
     section.fail("arm_state_lost_s", "must not be below arm_state_s");
   section.finish();
 }
 
-constexpr double kSlowest_hz = 10.0, kFastest_hz = 2000.0;
+constexpr double kLowestRate_hz = 10.0, kHighestRate_hz = 2000.0;
 
-void read_control(Section control, double rate_over_it_hz, Settings& settings) {
-  control.number("rate_hz", settings.rate_hz, kSlowest_hz, kFastest_hz);
-  if (rate_over_it_hz != 0.0) settings.rate_hz = rate_over_it_hz;
-  if (!(settings.rate_hz >= kSlowest_hz && settings.rate_hz <= kFastest_hz))
-    control.fail("rate_hz", "must be from 10 to 2000 (--rate, too)");
+void read_control(YamlSection control, double rate_override_hz, Settings& settings) {
+  control.number("rate_hz", settings.rate_hz, {kLowestRate_hz, kHighestRate_hz});
+  if (rate_override_hz != 0.0) settings.rate_hz = rate_override_hz;
+  if (!(settings.rate_hz >= kLowestRate_hz && settings.rate_hz <= kHighestRate_hz))
+    control.fail("rate_hz", "must be from 10 to 2000 (also when given by --rate)");
   control.positive("following_error_rad", settings.following_error_rad);
   control.finish();
 }
 
-void read_obstacles(Section obstacles, Settings& settings) {
+void read_obstacles(YamlSection obstacles, Settings& settings) {
   obstacles.flag("wait_for_first", settings.wait_for_obstacles);
   obstacles.not_negative("speed_bound_mps", settings.obstacle_speed_bound_mps);
-  obstacles.number("latency_s", settings.obstacle_trust.latency_s, 0.0, 1.0);
+  obstacles.number("latency_s", settings.obstacle_trust.latency_s, {0.0, 1.0});
   obstacles.not_negative("uncertainty_m", settings.obstacle_trust.uncertainty_m);
   obstacles.not_negative("acceleration_bound_mps2", settings.obstacle_trust.acceleration_bound_mps2);
   obstacles.finish();
 }
 
-void check_length(const Section& section, const std::string& key, const std::string& name) {
-  const size_t longest = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-  if (name.size() > longest) section.fail(key, "is longer than the 63 characters that LCM can send");
-}
-
-void read_channel(Section& section, const std::string& key, std::string& name) {
-  section.text(key, name);
-  check_length(section, key, name);
-}
-
-void read_channels(Section section, Channels& channels) {
-  read_channel(section, "target", channels.target);
-  read_channel(section, "obstacles", channels.obstacles);
-  read_channel(section, "arm_state", channels.arm_state);
-  read_channel(section, "arm_command", channels.arm_command);
-  read_channel(section, "controller_status", channels.controller_status);
-  read_channel(section, "loop_timing", channels.loop_timing);
-  section.finish();
-}
-
-/// What is heard on one channel and what is said on another would be taken for each other.
-void check_names(const Section& root, const Config& config) {
+/// Messages of two kinds on one channel could not be told apart, so every channel name must be unique.
+void check_channels_are_unique(const YamlSection& root, const Config& config) {
   const Channels& channels = config.channels;
   const Neighbours& neighbours = config.neighbours;
   std::vector<std::pair<std::string, std::string>> names = {{"channels.target", channels.target},
@@ -155,60 +140,51 @@ void check_names(const Section& root, const Config& config) {
       root.fail(key, fmt::format("'{}' is already the channel of {}", name, before->second));
 }
 
-/// x y z in m and roll pitch yaw in rad, as in a URDF.
-Eigen::Isometry3d read_pose(Section& section, const std::string& position_key, const std::string& angles_key) {
-  Vector3 position_m = Vector3::Zero(), rpy_rad = Vector3::Zero();
-  section.numbers(position_key, position_m, -1000.0, 1000.0);
-  section.vector(angles_key, rpy_rad);
-  return Eigen::Translation3d(position_m) * Eigen::AngleAxisd(rpy_rad.z(), Vector3::UnitZ()) *
-         Eigen::AngleAxisd(rpy_rad.y(), Vector3::UnitY()) * Eigen::AngleAxisd(rpy_rad.x(), Vector3::UnitX());
-}
-
-void read_neighbours(Section section, bool wait_for_obstacles, Neighbours& neighbours) {
+void read_neighbours(YamlSection section, bool wait_for_obstacles, Neighbours& neighbours) {
   read_channel(section, "publish", neighbours.publish);
   section.texts("listen", neighbours.listen);
   if (neighbours.listen.size() > kMaxNeighbours) section.fail("listen", fmt::format("more than {}", kMaxNeighbours));
-  for (const std::string& channel : neighbours.listen) check_length(section, "listen", channel);
+  for (const std::string& channel : neighbours.listen) check_channel_length(section, "listen", channel);
   if (!neighbours.listen.empty() && !wait_for_obstacles)
-    section.fail("listen", "needs obstacles.wait_for_first: nothing moves before all neighbours are heard");
-  neighbours.world_from_base = read_pose(section, "base_position_m", "base_rpy_rad");
+    section.fail("listen", "needs obstacles.wait_for_first: the arm waits for the links of all neighbours");
+  neighbours.world_from_base = read_world_from_base(section);
   section.finish();
 }
 
-void read_blackbox(Section section, BlackboxSettings& blackbox) {
-  section.number("seconds", blackbox.seconds, 1.0, 60.0);
+void read_blackbox(YamlSection section, BlackboxSettings& blackbox) {
+  section.number("seconds", blackbox.seconds, {1.0, 60.0});
   section.text("folder", blackbox.folder);
   section.finish();
 }
 
-void read_foresight(Section section, ForesightSettings& foresight) {
+void read_foresight(YamlSection section, ForesightSettings& foresight) {
   section.flag("enabled", foresight.enabled);
-  section.number("horizon_s", foresight.horizon_s, 0.5, 20.0);
+  section.number("horizon_s", foresight.horizon_s, {0.5, 20.0});
   section.not_negative("clearance_m", foresight.clearance_m);
-  section.whole("seed", foresight.seed, 0.0, 1e9);
+  section.whole("seed", foresight.seed, {0.0, 1e9});
   section.finish();
 }
 
-void read_dialect(Section& root, Config& config) {
+void read_dialect(YamlSection& root, Config& config) {
   std::string name = kSidestepDialect.name;
   root.choice("dialect", name, dialect_names());
   const Dialect& dialect = dialect_named(name);
   const int joints = config.model.arm.joints;
   if (dialect.joints != 0 && dialect.joints != joints)
-    root.fail("dialect", fmt::format("{} is for {} joints, the arm has {}", name, dialect.joints, joints));
+    root.fail("dialect", fmt::format("{} needs an arm with {} joints, this one has {}", name, dialect.joints, joints));
   config.dialect = &dialect;
   config.model.settings.start_guard_s = dialect.start_guard_s;
   config.channels.arm_state = dialect.arm_state_channel;
   config.channels.arm_command = dialect.arm_command_channel;
 }
 
-Robot read_robot(Section section, const std::string& config_file, const Overrides& overrides) {
+Robot read_robot(YamlSection section, const std::string& config_file, const Overrides& overrides) {
   Robot robot;
   section.text("urdf", robot.urdf);
   section.text("base", robot.base);
   section.text("tip", robot.tip);
   section.texts("package_path", robot.meshes.package_path);
-  section.whole("capsules_per_mesh", robot.meshes.capsules_per_mesh, 1.0, 8.0);
+  section.whole("capsules_per_mesh", robot.meshes.capsules_per_mesh, {1.0, 8.0});
   section.finish();
   if (!overrides.urdf.empty()) robot.urdf = overrides.urdf;
   if (!overrides.base.empty()) robot.base = overrides.base;
@@ -224,7 +200,7 @@ Robot read_robot(Section section, const std::string& config_file, const Override
 }  // namespace
 
 Config load_config(const std::string& file, const Overrides& overrides) {
-  Section root = file.empty() ? Section::empty() : Section::of_file(file);
+  YamlSection root = file.empty() ? YamlSection::empty() : YamlSection::of_file(file);
   Config config;
   config.file = file;
   config.overrides = overrides;
@@ -246,7 +222,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_obstacles(root.section("obstacles"), settings);
   read_channels(root.section("channels"), config.channels);
   read_neighbours(root.section("neighbours"), settings.wait_for_obstacles, config.neighbours);
-  check_names(root, config);
+  check_channels_are_unique(root, config);
   read_blackbox(root.section("blackbox"), config.blackbox);
   read_sidestep(root.section("sidestep"), settings.sidestep);
   read_shield(root.section("shield"), settings.shield);
@@ -254,7 +230,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   config.model.surroundings = read_surroundings(root);
   use_law(settings, law == "paper" ? Law::kPaper : Law::kSidestep);
   root.finish();
-  config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // takes a while
+  config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // slow, hence last
   return config;
 }
 

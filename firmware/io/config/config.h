@@ -13,10 +13,10 @@ namespace sidestep {
 /// Logs of the last seconds before a fault or a request; config section `blackbox:`.
 struct BlackboxSettings {
   double seconds = 10.0;
-  std::string folder = "blackbox";  ///< from the working directory; made when the first log is written
+  std::string folder = "blackbox";  ///< relative to the working directory; created with the first log
 };
 
-/// What the command line may say over the configuration; empty or zero: nothing.
+/// Options of the command line that replace values of the configuration; empty or zero: not given.
 struct Overrides {
   std::string law;
   std::string urdf;
@@ -27,13 +27,13 @@ struct Overrides {
 
 /// The arm's description; config section `robot:`.
 struct Robot {
-  std::string urdf;  ///< as found
+  std::string urdf;  ///< path of the file that was found
   std::string base;
   std::string tip;
   MeshOptions meshes;
 };
 
-/// A configuration, complete and checked.
+/// A complete and checked configuration.
 struct Config {
   Robot robot;
   Model model;
@@ -48,8 +48,8 @@ struct Config {
   WireSetup wire() const { return {channels, neighbours, *dialect, model.arm}; }
 };
 
-/// Reads the YAML file (none when the name is empty: defaults, and the arm from the overrides) and the arm's URDF.
-/// The URDF is looked for from the folder of the config file upwards (find_file.h).
+/// Reads the YAML file and the arm's URDF, which is searched from the folder of the YAML file upwards (find_file.h).
+/// Without a file (empty name) all settings are the defaults and the arm comes from the overrides.
 /// Throws std::runtime_error with one line that names the file and the key; unknown keys are errors.
 Config load_config(const std::string& file, const Overrides& overrides);
 

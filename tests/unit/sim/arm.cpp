@@ -47,7 +47,7 @@ const ArmPart& part_of(const Arm& arm, const std::string& link_name) {
   throw std::runtime_error("no part of " + link_name);
 }
 
-void what_hangs_on_the_arm_counts_and_what_it_stands_on_as_far_as_it_is_fixed(void**) {
+void links_below_the_base_and_links_fixed_to_the_base_are_parts(void**) {
   Arm arm = load(robot(link("world") + link("cart") + link("base") + link("arm") + link("lamp") + link("finger") +
                        link("tip") + link("flag") + link("door") + joint("world", "cart", "prismatic") +
                        joint("cart", "base", "fixed") + joint("cart", "flag", "fixed") + joint("cart", "door") +
@@ -66,19 +66,19 @@ void what_hangs_on_the_arm_counts_and_what_it_stands_on_as_far_as_it_is_fixed(vo
   check_near(arm.base_from_tool().translation(), Eigen::Vector3d(1, 1, 0), 1e-15);
 }
 
-void all_kinds_of_joints_move_as_told(void**) {
+void revolute_continuous_and_prismatic_joints_move_the_tool(void**) {
   Arm arm = load(robot(link("base") + link("a") + link("b") + link("tip") + joint("base", "a", "continuous") +
                        joint("a", "b", "prismatic", "0 1 0") + joint("b", "tip", "revolute", "0 0 -1")));
   assert_int_equal(arm.joints(), 3);
   JointVector q_rad(3);
   q_rad << M_PI / 2, 0.5, M_PI / 2;
   arm.place(q_rad);
-  // 1 to the first joint, a quarter turn to the left, 1 to the slide, 0.5 to its left, 1 to the last joint.
+  // 1 m to the first joint, a quarter turn to the left, 1 m to the slide, 0.5 m to its left, 1 m to the last joint.
   check_near(arm.base_from_tool().translation(), Eigen::Vector3d(1 - 0.5, 2, 0), 1e-15);
   check_near(arm.base_from_tool().linear(), Eigen::Matrix3d::Identity(), 1e-15);
 }
 
-void bad_arms_are_refused_in_one_line_naming_the_file(void**) {
+void bad_arms_are_refused_with_one_line_that_names_the_file(void**) {
   const std::string two = link("base") + link("tip");
   const struct {
     std::string urdf, complaint;
@@ -116,7 +116,7 @@ void bad_arms_are_refused_in_one_line_naming_the_file(void**) {
   assert_true(one_line_with(message_of([] { Arm("urdf", "a", "b"); }), {"urdf: "}));
 }
 
-void eleven_joints_are_too_many(void**) {
+void eleven_joints_are_refused(void**) {
   std::string content = link("base");
   std::string parent = "base";
   for (int i = 1; i <= 11; ++i) {
@@ -131,10 +131,10 @@ void eleven_joints_are_too_many(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(what_hangs_on_the_arm_counts_and_what_it_stands_on_as_far_as_it_is_fixed),
-      cmocka_unit_test(all_kinds_of_joints_move_as_told),
-      cmocka_unit_test(bad_arms_are_refused_in_one_line_naming_the_file),
-      cmocka_unit_test(eleven_joints_are_too_many),
+      cmocka_unit_test(links_below_the_base_and_links_fixed_to_the_base_are_parts),
+      cmocka_unit_test(revolute_continuous_and_prismatic_joints_move_the_tool),
+      cmocka_unit_test(bad_arms_are_refused_with_one_line_that_names_the_file),
+      cmocka_unit_test(eleven_joints_are_refused),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

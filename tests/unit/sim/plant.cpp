@@ -21,7 +21,7 @@ PlantSpec servo(double lag_s, double latency_s, double velocity_radps, double ac
           both(acceleration_radps2, acceleration_radps2)};
 }
 
-void starts_at_rest_and_stays_there_without_commands(void**) {
+void a_plant_stays_at_rest_without_commands(void**) {
   for (const PlantSpec& spec : {PlantSpec{}, servo(0.03, 0.01, 2, 10)}) {
     Plant plant(spec, both(0.1, -0.2));
     plant.advance(1'000'000);
@@ -30,7 +30,7 @@ void starts_at_rest_and_stays_there_without_commands(void**) {
   }
 }
 
-void an_ideal_plant_adds_velocity_times_period_to_the_last_bit(void**) {
+void an_ideal_plant_adds_exactly_velocity_times_period(void**) {
   Plant plant({}, both(0.1, -0.2));
   JointVector q_rad = both(0.1, -0.2);
   for (int k = 0; k < 500; ++k) {
@@ -57,12 +57,12 @@ void an_ideal_plant_stops_50_ms_after_the_last_command(void**) {
   check_near(plant.q_rad(), both(0.06, -0.09), 1e-15);
 }
 
-void a_servo_has_gone_63_percent_of_a_step_after_its_lag(void**) {
+void a_servo_reaches_63_percent_of_a_step_after_its_lag(void**) {
   Plant plant(servo(0.03, 0, 10, 1e6), both(0, 0));
   plant.command(both(1, -1));
   plant.advance(30'000);
   const double share = 1.0 - std::exp(-1.0);
-  // At a million rad/s2 the limit costs a microsecond.
+  // The acceleration limit of 1e6 rad/s2 delays the step by 1 us.
   check_near(plant.qd_radps(), both(share, -share), 1e-4);
   check_near(plant.q_rad(), both(0.03 * (1 - share), -0.03 * (1 - share)), 1e-5);
 }
@@ -73,10 +73,10 @@ void a_servo_follows_its_differential_equation(void**) {
   double q_rad = 0, qd_radps = 0;
   for (const double command_radps : {0.1, 2.0, -0.7, -0.69, 0.0}) {
     plant.command(both(command_radps, 0));
-    const double wanted_radps = std::clamp(command_radps, -1.5, 1.5);
+    const double demand_radps = std::clamp(command_radps, -1.5, 1.5);
     for (int i = 0; i < 40'000; ++i) {
       q_rad += qd_radps * dt_s;
-      qd_radps += std::clamp((wanted_radps - qd_radps) / lag_s, -limit_radps2, limit_radps2) * dt_s;
+      qd_radps += std::clamp((demand_radps - qd_radps) / lag_s, -limit_radps2, limit_radps2) * dt_s;
     }
     plant.advance(40'000);
     check_near(plant.qd_radps()[0], qd_radps, 1e-4);
@@ -84,19 +84,19 @@ void a_servo_follows_its_differential_equation(void**) {
   }
 }
 
-void a_servo_does_not_depend_on_how_the_time_is_cut(void**) {
+void the_motion_of_a_servo_does_not_depend_on_the_time_steps(void**) {
   Plant whole(servo(0.02, 0.013, 2, 10), both(0, 0)), cut = whole;
   for (const double command_radps : {1.0, -2.0, 0.5}) {
     whole.command(both(command_radps, 1));
     cut.command(both(command_radps, 1));
-    whole.advance(90'000);  // the watchdog strikes in between
+    whole.advance(90'000);  // longer than the watchdog time
     for (int i = 0; i < 90; ++i) cut.advance(1'000);
     check_near(whole.q_rad(), cut.q_rad(), 1e-13);
     check_near(whole.qd_radps(), cut.qd_radps(), 1e-13);
   }
 }
 
-void a_servo_keeps_its_limits(void**) {
+void a_servo_stays_within_its_limits(void**) {
   Plant plant(servo(0.005, 0, 1.5, 10), both(0, 0));
   JointVector before = plant.qd_radps();
   for (int k = 0; k < 600; ++k) {
@@ -117,7 +117,7 @@ void a_servo_without_lag_ramps_to_the_command(void**) {
   check_near(plant.q_rad(), both(0.2 * 0.02 / 2 + 0.2 * 0.02, -(0.1 * 0.01 / 2 + 0.1 * 0.03)), 1e-15);
 }
 
-void commands_take_effect_after_the_latency_in_their_order(void**) {
+void commands_take_effect_in_order_after_the_latency(void**) {
   Plant plant(servo(0, 0.025, 10, 1e6), both(0, 0));
   plant.command(both(1, 0));
   plant.advance(10'000);
@@ -141,18 +141,18 @@ void a_servo_slows_down_50_ms_after_the_last_command_took_effect(void**) {
   check_near(plant.qd_radps()[0], 0, 1e-12);
 }
 
-void refuses_and_counts_commands_of_the_wrong_size_not_finite_or_absurd(void**) {
+void commands_of_wrong_size_or_implausible_value_are_refused_and_counted(void**) {
   Plant plant({}, both(0, 0));
   plant.command(both(0.5, 0.5));
   plant.advance(10'000);
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-  check(!plant.command(both(nan, 0)), "NaN taken");
-  check(!plant.command(both(0, -infinity)), "infinity taken");
-  check(!plant.command(both(0, 1e300)), "1e300 taken");
-  check(!plant.command(Eigen::VectorXd::Zero(1)), "one value taken");
-  check(!plant.command(Eigen::VectorXd::Zero(3)), "three values taken");
-  check(!plant.command(Eigen::VectorXd::Zero(0)), "no value taken");
-  check(!plant.command(Eigen::VectorXd::Zero(1000)), "a thousand values taken");
+  check(!plant.command(both(nan, 0)), "NaN accepted");
+  check(!plant.command(both(0, -infinity)), "infinity accepted");
+  check(!plant.command(both(0, 1e300)), "1e300 accepted");
+  check(!plant.command(Eigen::VectorXd::Zero(1)), "one value accepted");
+  check(!plant.command(Eigen::VectorXd::Zero(3)), "three values accepted");
+  check(!plant.command(Eigen::VectorXd::Zero(0)), "no value accepted");
+  check(!plant.command(Eigen::VectorXd::Zero(1000)), "a thousand values accepted");
   assert_int_equal(plant.refused(), 7);
   check_near(plant.qd_radps(), both(0.5, 0.5), 0);
   check_near(plant.last_command_radps(), both(0.5, 0.5), 0);
@@ -160,7 +160,7 @@ void refuses_and_counts_commands_of_the_wrong_size_not_finite_or_absurd(void**) 
   check_near(plant.q_rad(), both(0.025, 0.025), 1e-15);
 }
 
-void the_newest_command_of_a_flood_counts_in_the_end(void**) {
+void the_last_command_of_a_flood_takes_effect(void**) {
   Plant plant(servo(0, 0.02, 10, 1e6), both(0, 0));
   for (int i = 0; i < 100'000; ++i) plant.command(both(1, 0));
   plant.command(both(3, 0));
@@ -172,18 +172,18 @@ void the_newest_command_of_a_flood_counts_in_the_end(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(starts_at_rest_and_stays_there_without_commands),
-      cmocka_unit_test(an_ideal_plant_adds_velocity_times_period_to_the_last_bit),
+      cmocka_unit_test(a_plant_stays_at_rest_without_commands),
+      cmocka_unit_test(an_ideal_plant_adds_exactly_velocity_times_period),
       cmocka_unit_test(an_ideal_plant_stops_50_ms_after_the_last_command),
-      cmocka_unit_test(a_servo_has_gone_63_percent_of_a_step_after_its_lag),
+      cmocka_unit_test(a_servo_reaches_63_percent_of_a_step_after_its_lag),
       cmocka_unit_test(a_servo_follows_its_differential_equation),
-      cmocka_unit_test(a_servo_does_not_depend_on_how_the_time_is_cut),
-      cmocka_unit_test(a_servo_keeps_its_limits),
+      cmocka_unit_test(the_motion_of_a_servo_does_not_depend_on_the_time_steps),
+      cmocka_unit_test(a_servo_stays_within_its_limits),
       cmocka_unit_test(a_servo_without_lag_ramps_to_the_command),
-      cmocka_unit_test(commands_take_effect_after_the_latency_in_their_order),
+      cmocka_unit_test(commands_take_effect_in_order_after_the_latency),
       cmocka_unit_test(a_servo_slows_down_50_ms_after_the_last_command_took_effect),
-      cmocka_unit_test(refuses_and_counts_commands_of_the_wrong_size_not_finite_or_absurd),
-      cmocka_unit_test(the_newest_command_of_a_flood_counts_in_the_end),
+      cmocka_unit_test(commands_of_wrong_size_or_implausible_value_are_refused_and_counted),
+      cmocka_unit_test(the_last_command_of_a_flood_takes_effect),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -40,13 +40,13 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
+void a_csv_row_has_every_column_and_full_precision(void**) {
   const auto file = std::filesystem::temp_directory_path() / ("sim_record." + std::to_string(getpid()) + ".csv");
   Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
   Row row = row_at(1.0 / 3.0);
   row.q_rad[1] = 0.1 + 1e-17;
   truth.place(row.q_rad);
-  judge(row, truth);
+  evaluate(row, truth);
   {
     CsvFile csv(file.string(), 7, 2);
     csv.write(row, truth);
@@ -72,7 +72,7 @@ void a_csv_row_has_a_value_for_every_column_and_loses_no_bit(void**) {
   check_near(value("mode"), 2, 0);
 }
 
-void surroundings_and_other_arms_are_judged_too(void**) {
+void surroundings_and_other_arms_count_in_the_clearance(void**) {
   Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
   Row row = row_at(0);
   row.q_rad.setZero();
@@ -84,7 +84,7 @@ void surroundings_and_other_arms_are_judged_too(void**) {
   ball.motion.position_m = truth.tool_m();
   row.world.surroundings = {ball};
   row.neighbour_m = 0.1;
-  judge(row, truth);
+  evaluate(row, truth);
   assert_true(row.nearest.clearance_m < 0.0);
   Summary summary(10'000);
   summary.add(row);
@@ -92,23 +92,23 @@ void surroundings_and_other_arms_are_judged_too(void**) {
 
   row.world.surroundings.clear();
   row.neighbour_m = -0.01;
-  judge(row, truth);
-  Summary beside(10'000);
-  beside.add(row);
+  evaluate(row, truth);
+  Summary with_neighbour(10'000);
+  with_neighbour.add(row);
   Expectations expect;
   expect.clearance_min_m = 0;
-  assert_int_equal(beside.broken(expect).size(), 1);
+  assert_int_equal(with_neighbour.broken(expect).size(), 1);
   for (const char* part : {"contact                   YES", "to arms     -0.0100 m"})
-    check(beside.text({}).find(part) != std::string::npos, "no '%s'", part);
+    check(with_neighbour.text({}).find(part) != std::string::npos, "no '%s'", part);
 }
 
-void a_csv_file_that_cannot_be_written_is_an_error_in_one_line(void**) {
+void an_unwritable_csv_file_is_refused_with_one_line(void**) {
   assert_true(
       one_line_with(message_of([] { CsvFile("no/such/folder/a.csv", 7, 0); }), {"no/such/folder/a.csv: cannot"}));
   assert_true(one_line_with(message_of([] { CsvFile("/dev/full", 7, 0).close(); }), {"/dev/full: "}));
 }
 
-void expectations_are_judged_over_the_whole_run(void**) {
+void expectations_are_checked_over_the_whole_run(void**) {
   Summary summary(10'000);
   summary.add(row_at(0, 0.1, 0.5));
   summary.add(row_at(0.01, -0.02, 0.4));
@@ -129,7 +129,7 @@ void expectations_are_judged_over_the_whole_run(void**) {
   assert_string_equal(broken[1].c_str(), "clearance_min_m: wanted at least 0, got -0.02");
 }
 
-void a_run_without_figures_keeps_no_expectation(void**) {
+void a_result_that_is_not_a_number_breaks_an_expectation(void**) {
   Row row = row_at(0);
   row.nearest.clearance_m = row.target_distance_m = std::nan("");
   Summary summary(10'000);
@@ -139,7 +139,7 @@ void a_run_without_figures_keeps_no_expectation(void**) {
   assert_int_equal(summary.broken(expect).size(), 1);
 }
 
-void acceleration_is_taken_over_whole_periods_of_the_commands(void**) {
+void acceleration_is_computed_over_whole_periods_of_the_commands(void**) {
   const auto most = [](const std::vector<Command>& commands) {
     Summary summary(10'000);
     for (const Command& one : commands) summary.add(one);
@@ -152,10 +152,10 @@ void acceleration_is_taken_over_whole_periods_of_the_commands(void**) {
   check_near(most({command(1'000'000, 0), command(1'009'000, 0.1)}), 10, 1e-9);     // jitter
   check_near(most({command(1'000'000, 0), command(1'020'500, 0.1)}), 5, 1e-9);      // one skipped
   check_near(most({command(1'000'000, 0), command(1'000'000, 0.1)}), 10, 1e-9);     // two controllers
-  check_near(most({command(1'000'000, 0.1), command(1'200'000, -0.3)}), 30, 1e-9);  // the plant had stopped
+  check_near(most({command(1'000'000, 0.1), command(1'200'000, -0.3)}), 30, 1e-9);  // after a pause, from rest
 }
 
-void the_summary_names_what_came_closest(void**) {
+void the_summary_names_the_closest_pair(void**) {
   Summary summary(10'000);
   Scenario scenario;
   scenario.title = "a title";
@@ -171,13 +171,13 @@ void the_summary_names_what_came_closest(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_csv_row_has_a_value_for_every_column_and_loses_no_bit),
-      cmocka_unit_test(surroundings_and_other_arms_are_judged_too),
-      cmocka_unit_test(a_csv_file_that_cannot_be_written_is_an_error_in_one_line),
-      cmocka_unit_test(expectations_are_judged_over_the_whole_run),
-      cmocka_unit_test(a_run_without_figures_keeps_no_expectation),
-      cmocka_unit_test(acceleration_is_taken_over_whole_periods_of_the_commands),
-      cmocka_unit_test(the_summary_names_what_came_closest),
+      cmocka_unit_test(a_csv_row_has_every_column_and_full_precision),
+      cmocka_unit_test(surroundings_and_other_arms_count_in_the_clearance),
+      cmocka_unit_test(an_unwritable_csv_file_is_refused_with_one_line),
+      cmocka_unit_test(expectations_are_checked_over_the_whole_run),
+      cmocka_unit_test(a_result_that_is_not_a_number_breaks_an_expectation),
+      cmocka_unit_test(acceleration_is_computed_over_whole_periods_of_the_commands),
+      cmocka_unit_test(the_summary_names_the_closest_pair),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

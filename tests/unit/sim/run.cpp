@@ -1,7 +1,8 @@
-#include "host/sim/play.h"
+#include "host/sim/simulation.h"
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -22,7 +23,7 @@ namespace {
 
 const std::atomic<bool> kNotInterrupted{false};
 
-/// A port of its own, should the tests not have a network of their own.
+/// A port per process, because tests may share one network.
 std::string url() {
   return "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 40'000) + "?ttl=0";
 }
@@ -33,13 +34,12 @@ Scenario scenario_of(double duration_s) {
   return scenario;
 }
 
-/// A controller in a thread of its own that answers every ARM_STATE, from the tenth on with TRACK, and keeps what it
-/// saw.
+/// A controller in a separate thread. It calls a function for each ARM_STATE and stores the messages it receives.
 class StandIn {
  public:
-  using Answer = std::function<void(StandIn&, int64_t utime, int cycle)>;
+  using Respond = std::function<void(StandIn&, int64_t utime, int cycle)>;
 
-  explicit StandIn(Answer answer) : answer_(std::move(answer)), lcm_(url()) {
+  explicit StandIn(Respond respond) : respond_(std::move(respond)), lcm_(url()) {
     lcm_.subscribe("ARM_STATE", &StandIn::on_arm, this)->setQueueCapacity(1000);
     lcm_.subscribe("OBSTACLES", &StandIn::on_obstacles, this)->setQueueCapacity(1000);
     lcm_.subscribe("TARGET", &StandIn::on_target, this)->setQueueCapacity(1000);
@@ -64,11 +64,12 @@ class StandIn {
     lcm_.publish("ARM_COMMAND", &message);
   }
 
-  void status(int64_t utime, bool tracks) {
+  void status(int64_t utime, bool tracks, const std::string& link = "", const std::string& text = "holding") {
     wire::controller_status_t message{};
     message.utime = utime;
     message.mode = tracks ? wire::controller_status_t::TRACK : wire::controller_status_t::HOLD;
-    message.message = "holding";
+    message.nearest_link = link;
+    message.message = text;
     lcm_.publish("CONTROLLER_STATUS", &message);
   }
 
@@ -83,7 +84,7 @@ class StandIn {
  private:
   void on_arm(const lcm::ReceiveBuffer*, const std::string&, const wire::joint_state_t* message) {
     arms.push_back(*message);
-    answer_(*this, message->utime, static_cast<int>(arms.size()) - 1);
+    respond_(*this, message->utime, static_cast<int>(arms.size()) - 1);
   }
   void on_obstacles(const lcm::ReceiveBuffer*, const std::string&, const wire::obstacles_t* message) {
     obstacles.push_back(*message);
@@ -92,7 +93,7 @@ class StandIn {
     targets.push_back(*message);
   }
 
-  Answer answer_;
+  Respond respond_;
   lcm::LCM lcm_;
   std::atomic<bool> over_{false};
   std::thread thread_;
@@ -104,36 +105,37 @@ std::vector<double> wave(int cycle) {
   return qd_radps;
 }
 
-void answer_well(StandIn& controller, int64_t utime, int cycle) {
+/// Answers with a command and a status: HOLD in the first ten cycles, then TRACK.
+void respond_well(StandIn& controller, int64_t utime, int cycle) {
   controller.command(utime, cycle < 10 ? std::vector<double>(7, 0.0) : wave(cycle));
   controller.status(utime, cycle >= 10);
 }
 
-struct Played {
-  End end;
+struct Result {
+  Outcome outcome;
   int periods;
   JointVector q_rad;
   int64_t refused, malformed;
   std::string waits_for;
 };
 
-Played play(const Scenario& scenario, bool lockstep, double patience_s = 5, const std::string& csv_file = "",
-            const std::atomic<bool>& interrupted = kNotInterrupted) {
-  Bus bus(url(), "", {scenario.channels});
+Result simulate(const Scenario& scenario, bool lockstep, double patience_s = 5, const std::string& csv_file = "",
+                const std::atomic<bool>& interrupted = kNotInterrupted) {
+  SimWire wire(url(), "", {scenario.channels});
   std::vector<Run> runs;
   runs.emplace_back(scenario, csv_file);
-  Play all(std::move(runs), Live(true, lockstep));
-  const End end = (lockstep ? run_lockstep : run_realtime)(all, bus, patience_s, interrupted);
+  Simulation all(std::move(runs), ProgressLine(true, lockstep));
+  const Outcome outcome = (lockstep ? run_lockstep : run_realtime)(all, wire, patience_s, interrupted);
   const Run& run = all.runs.front();
-  return {end, run.summary().rows(), run.plant.q_rad(), run.plant.refused(), bus.malformed(), run.waits_for()};
+  return {outcome, run.summary().rows(), run.plant.q_rad(), run.plant.refused(), wire.malformed(), run.waits_for()};
 }
 
-void lockstep_sends_everything_with_one_utime_and_holds_the_world_until_track(void**) {
-  StandIn controller(answer_well);
-  const Played played = play(scenario_of(0.5), true);
+void lockstep_sends_all_messages_with_one_utime_and_keeps_the_world_at_rest_until_track(void**) {
+  StandIn controller(respond_well);
+  const Result result = simulate(scenario_of(0.5), true);
   controller.stop();
-  assert_true(played.end == End::kDone);
-  assert_int_equal(played.periods, 51);
+  assert_true(result.outcome == Outcome::kDone);
+  assert_int_equal(result.periods, 51);
   assert_int_equal(controller.arms.size(), 10 + 51);
   assert_int_equal(controller.obstacles.size(), controller.arms.size());
   for (size_t k = 0; k < controller.arms.size(); ++k) {
@@ -149,8 +151,8 @@ void lockstep_sends_everything_with_one_utime_and_holds_the_world_until_track(vo
 }
 
 void the_plant_follows_each_command_over_one_period(void**) {
-  StandIn controller(answer_well);
-  play(scenario_of(0.3), true);
+  StandIn controller(respond_well);
+  simulate(scenario_of(0.3), true);
   controller.stop();
   for (size_t k = 10; k + 1 < controller.arms.size(); ++k) {
     const wire::joint_state_t &now = controller.arms[k], &next = controller.arms[k + 1];
@@ -167,12 +169,12 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void two_lockstep_runs_are_the_same_to_the_last_bit(void**) {
+void two_lockstep_runs_are_bit_identical(void**) {
   const auto file = std::filesystem::temp_directory_path() / ("sim_run." + std::to_string(getpid()) + ".csv");
   std::string runs[2];
   for (std::string& run : runs) {
-    StandIn controller(answer_well);
-    play(scenario_of(0.5), true, 5, file.string());
+    StandIn controller(respond_well);
+    simulate(scenario_of(0.5), true, 5, file.string());
     run = content_of(file);
   }
   std::filesystem::remove(file);
@@ -180,97 +182,126 @@ void two_lockstep_runs_are_the_same_to_the_last_bit(void**) {
   assert_true(runs[0] == runs[1]);
 }
 
-void gives_up_when_no_controller_comes(void**) {
+void the_simulation_ends_when_no_controller_answers(void**) {
   for (const bool lockstep : {true, false}) {
-    const Played played = play(scenario_of(0.5), lockstep, 0.3);
-    assert_true(played.end == End::kNeverTracked);
-    check(played.waits_for.find("nothing heard") != std::string::npos, "%s", played.waits_for.c_str());
+    const Result result = simulate(scenario_of(0.5), lockstep, 0.3);
+    assert_true(result.outcome == Outcome::kNeverTracked);
+    check(result.waits_for.find("no message on") != std::string::npos, "%s", result.waits_for.c_str());
   }
 }
 
-void gives_up_when_the_controller_never_tracks_and_says_why(void**) {
+void the_simulation_ends_with_a_reason_when_the_controller_never_tracks(void**) {
   for (const bool lockstep : {true, false}) {
     StandIn controller([](StandIn& self, int64_t utime, int) {
       self.command(utime, std::vector<double>(7, 0.0));
       self.status(utime, false);
     });
-    const Played played = play(scenario_of(0.5), lockstep, 0.3);
-    assert_true(played.end == End::kNeverTracked);
-    check(played.waits_for.find("holding") != std::string::npos, "%s", played.waits_for.c_str());
+    const Result result = simulate(scenario_of(0.5), lockstep, 0.3);
+    assert_true(result.outcome == Outcome::kNeverTracked);
+    check(result.waits_for.find("holding") != std::string::npos, "%s", result.waits_for.c_str());
   }
 }
 
-void a_controller_that_falls_silent_is_lost(void**) {
+void a_controller_that_stops_sending_is_lost(void**) {
   StandIn controller([](StandIn& self, int64_t utime, int cycle) {
-    if (cycle < 20) answer_well(self, utime, cycle);
+    if (cycle < 20) respond_well(self, utime, cycle);
   });
-  const Played played = play(scenario_of(0.5), true);
-  assert_true(played.end == End::kLost);
-  assert_int_equal(played.periods, 10);
+  const Result result = simulate(scenario_of(0.5), true);
+  assert_true(result.outcome == Outcome::kLost);
+  assert_int_equal(result.periods, 10);
 }
 
-void an_interrupt_ends_the_run(void**) {
+void an_interrupt_ends_the_simulation(void**) {
   const std::atomic<bool> interrupted{true};
   for (const bool lockstep : {true, false}) {
-    assert_true(play(scenario_of(0.5), lockstep, 5, "", interrupted).end == End::kInterrupted);
+    assert_true(simulate(scenario_of(0.5), lockstep, 5, "", interrupted).outcome == Outcome::kInterrupted);
   }
 }
 
-void poison(StandIn& controller, int64_t utime, int cycle) {
+template <typename Message>
+std::vector<uint8_t> encoded(const Message& message) {
+  std::vector<uint8_t> data(static_cast<size_t>(message.getEncodedSize()));
+  message.encode(data.data(), 0, static_cast<int>(data.size()));
+  return data;
+}
+
+constexpr uint8_t kHostileFirstBytes[] = {0x7f, 0xff, 0x80};  // of a count or length: huge and negative
+
+/// Sends the message with its four bytes at `at`, a count or length, replaced by hostile ones.
+void send_hostile(StandIn& controller, const std::string& channel, std::vector<uint8_t> data, size_t at) {
+  for (const uint8_t first : kHostileFirstBytes) {
+    data[at] = first;
+    controller.bytes(channel, data);
+  }
+}
+
+/// Offset of the length of the text that consists of this letter; all numbers of the message are 0.
+size_t length_of_text_at(const std::vector<uint8_t>& data, char letter) {
+  constexpr size_t kHash = 8, kLength = 4;
+  return static_cast<size_t>(std::find(data.begin() + kHash, data.end(), letter) - data.begin()) - kLength;
+}
+
+constexpr int kHostileMessages = 2 + 3 * 3;
+
+void send_hostile_messages(StandIn& controller, int64_t utime, int cycle) {
   std::vector<double> qd_radps = wave(cycle);
   qd_radps[3] = std::nan("");
-  controller.command(utime - 1, qd_radps);  // not an answer
+  controller.command(utime - 1, qd_radps);  // well-formed, but with another utime
   controller.bytes("ARM_COMMAND", {});
   controller.bytes("ARM_COMMAND", {1, 2, 3});
-  wire::joint_command_t command{};
-  std::vector<uint8_t> data(static_cast<size_t>(command.getEncodedSize()));
-  command.encode(data.data(), 0, static_cast<int>(data.size()));
-  for (const uint8_t first : {0x7f, 0xff, 0x80}) {  // counts: huge and negative
-    data[24] = first;
-    controller.bytes("ARM_COMMAND", data);
-  }
+  const std::vector<uint8_t> command = encoded(wire::joint_command_t{});
+  send_hostile(controller, "ARM_COMMAND", command, command.size() - sizeof(int32_t));  // ends with the joint count
   wire::controller_status_t status{};
-  data.resize(static_cast<size_t>(status.getEncodedSize()));
-  status.encode(data.data(), 0, static_cast<int>(data.size()));
-  for (const uint8_t first : {0x7f, 0xff, 0x80}) {  // lengths of a text: huge and negative
-    data[101] = first;
-    controller.bytes("CONTROLLER_STATUS", data);
-  }
+  status.nearest_link = "L";
+  status.message = "M";
+  const std::vector<uint8_t> data = encoded(status);
+  for (const char letter : {'L', 'M'})
+    send_hostile(controller, "CONTROLLER_STATUS", data, length_of_text_at(data, letter));
 }
 
-void hostile_messages_are_counted_and_change_nothing(void**) {
+void texts_of_any_length_are_decoded(void**) {
+  StandIn controller([](StandIn& self, int64_t utime, int cycle) {
+    self.command(utime, std::vector<double>(7, 0.0));
+    self.status(utime, cycle >= 10, std::string(static_cast<size_t>(cycle % 5) * 100, 'l'), std::string(300, 'm'));
+  });
+  const Result result = simulate(scenario_of(0.3), true);
+  assert_true(result.outcome == Outcome::kDone);
+  assert_int_equal(result.malformed, 0);
+}
+
+void hostile_messages_are_counted_and_have_no_effect(void**) {
   JointVector q_rad[2];
   for (const bool hostile : {false, true}) {
     StandIn controller([hostile](StandIn& self, int64_t utime, int cycle) {
-      if (hostile) poison(self, utime, cycle);
-      answer_well(self, utime, cycle);
+      if (hostile) send_hostile_messages(self, utime, cycle);
+      respond_well(self, utime, cycle);
     });
-    const Played played = play(scenario_of(0.3), true);
-    assert_true(played.end == End::kDone);
-    assert_int_equal(played.malformed, hostile ? 8 * 41 : 0);
-    q_rad[hostile] = played.q_rad;
+    const Result result = simulate(scenario_of(0.3), true);
+    assert_true(result.outcome == Outcome::kDone);
+    assert_int_equal(result.malformed, hostile ? kHostileMessages * 41 : 0);
+    q_rad[hostile] = result.q_rad;
   }
   check_near(q_rad[1], q_rad[0], 0);
 }
 
-void refused_commands_leave_the_last_one_in_force(void**) {
+void after_a_refused_command_the_last_one_stays_in_effect(void**) {
   StandIn controller([](StandIn& self, int64_t utime, int cycle) {
     self.command(utime, std::vector<double>(cycle == 20 ? 6 : 7, cycle == 21 ? std::nan("") : 0.1));
     self.status(utime, true);
   });
-  const Played played = play(scenario_of(0.3), true);
-  assert_int_equal(played.refused, 2);
-  check_near(played.q_rad[0], 0.03, 1e-12);
+  const Result result = simulate(scenario_of(0.3), true);
+  assert_int_equal(result.refused, 2);
+  check_near(result.q_rad[0], 0.03, 1e-12);
 }
 
-void real_time_takes_as_long_as_it_says_and_sends_the_arm_every_2_ms(void**) {
-  StandIn controller(answer_well);
+void real_time_lasts_its_duration_and_sends_the_arm_state_every_2_ms(void**) {
+  StandIn controller(respond_well);
   const auto start = std::chrono::steady_clock::now();
-  const Played played = play(scenario_of(0.4), false);
+  const Result result = simulate(scenario_of(0.4), false);
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   controller.stop();
-  assert_true(played.end == End::kDone);
-  assert_int_equal(played.periods, 41);
+  assert_true(result.outcome == Outcome::kDone);
+  assert_int_equal(result.periods, 41);
   check(took_s > 0.4 && took_s < 2, "%g s", took_s);
   check(controller.arms.size() > 100 && controller.arms.size() < 1000, "%zu arm states", controller.arms.size());
   check(controller.obstacles.size() >= 20, "%zu obstacle messages", controller.obstacles.size());
@@ -283,16 +314,17 @@ void real_time_takes_as_long_as_it_says_and_sends_the_arm_every_2_ms(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(lockstep_sends_everything_with_one_utime_and_holds_the_world_until_track),
+      cmocka_unit_test(lockstep_sends_all_messages_with_one_utime_and_keeps_the_world_at_rest_until_track),
       cmocka_unit_test(the_plant_follows_each_command_over_one_period),
-      cmocka_unit_test(two_lockstep_runs_are_the_same_to_the_last_bit),
-      cmocka_unit_test(gives_up_when_no_controller_comes),
-      cmocka_unit_test(gives_up_when_the_controller_never_tracks_and_says_why),
-      cmocka_unit_test(a_controller_that_falls_silent_is_lost),
-      cmocka_unit_test(an_interrupt_ends_the_run),
-      cmocka_unit_test(hostile_messages_are_counted_and_change_nothing),
-      cmocka_unit_test(refused_commands_leave_the_last_one_in_force),
-      cmocka_unit_test(real_time_takes_as_long_as_it_says_and_sends_the_arm_every_2_ms),
+      cmocka_unit_test(two_lockstep_runs_are_bit_identical),
+      cmocka_unit_test(the_simulation_ends_when_no_controller_answers),
+      cmocka_unit_test(the_simulation_ends_with_a_reason_when_the_controller_never_tracks),
+      cmocka_unit_test(a_controller_that_stops_sending_is_lost),
+      cmocka_unit_test(an_interrupt_ends_the_simulation),
+      cmocka_unit_test(texts_of_any_length_are_decoded),
+      cmocka_unit_test(hostile_messages_are_counted_and_have_no_effect),
+      cmocka_unit_test(after_a_refused_command_the_last_one_stays_in_effect),
+      cmocka_unit_test(real_time_lasts_its_duration_and_sends_the_arm_state_every_2_ms),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

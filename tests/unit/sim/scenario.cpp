@@ -47,7 +47,7 @@ std::string changed(const std::string& from, const std::string& to) {
   return at == std::string::npos ? "(the change does not apply)" : text.replace(at, from.size(), to);
 }
 
-void a_complete_scenario_arrives_value_by_value(void**) {
+void every_value_of_a_scenario_is_read(void**) {
   const Scenario s = load(kGood);
   assert_string_equal(s.title.c_str(), "two obstacles and a servo");
   assert_string_equal(s.controller_config.c_str(), "firmware/config/lwa3.yaml");
@@ -78,11 +78,11 @@ void a_complete_scenario_arrives_value_by_value(void**) {
 
 void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
   const std::string two = ", waypoints: [[0.05, 1, 2, 3.5, 4, 5, 6], [0.2, 7, 8, 9, 0, 0, -1]]";
-  const World target_curves = load(changed("velocity_mps: [0, 0.1, 0]", "velocity_mps: [0, 0.1, 0]" + two)).world;
-  const World bar_curves = load(changed("velocity_mps: [0, 0, -1]", "velocity_mps: [0, 0, -1]" + two)).world;
-  assert_null(target_curves.obstacles[1].motion.path.get());
-  assert_null(bar_curves.target.motion.path.get());
-  for (const Motion& motion : {target_curves.target.motion, bar_curves.obstacles[1].motion}) {
+  const World curved_target = load(changed("velocity_mps: [0, 0.1, 0]", "velocity_mps: [0, 0.1, 0]" + two)).world;
+  const World curved_bar = load(changed("velocity_mps: [0, 0, -1]", "velocity_mps: [0, 0, -1]" + two)).world;
+  assert_null(curved_target.obstacles[1].motion.path.get());
+  assert_null(curved_bar.target.motion.path.get());
+  for (const Motion& motion : {curved_target.target.motion, curved_bar.obstacles[1].motion}) {
     assert_non_null(motion.path.get());
     const Path& path = *motion.path;
     assert_int_equal(path.size(), 3);
@@ -99,8 +99,8 @@ void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
 struct Mistake {
   const char* from;
   const char* to;
-  const char* key;        // that the error names
-  const char* complaint;  // part of the rest
+  const char* key;        ///< that the error names
+  const char* complaint;  ///< another part of the error
 };
 
 const Mistake kMistakes[] = {
@@ -187,7 +187,10 @@ const Mistake kMistakes[] = {
     {"radius_m: 0.1", "radius_m: 0", "obstacles[1].radius_m", "from 0.0001"},
     {"length_m: 0.5", "length_m: 0.5, edges_m: [1, 1, 1]", "obstacles[1].edges_m", "unknown key"},
     {"edges_m: [0.1, 0.2, 0.3]", "edges_m: [0.1, -0.2, 0.3]", "obstacles[0].edges_m[1]", "is -0.2"},
-    {"  - {id: 4", "  - 7\n  - {id: 4", "obstacles[0]", "map"},
+    {"  - {id: 4", "  - 7\n  - {id: 4", "obstacles[0]", "mapping"},
+    {"obstacles:\n", "other: 1\nobstacles: ~\nthings:\n", "obstacles", "missing"},
+    {"plant: {kind: servo", "sensing: ~\nplant: {kind: servo", "sensing.joint_noise_rad", "missing"},
+    {"quaternion: [0, 1, 0, 0]", "quaternion: ~", "target.quaternion", "missing"},
     {"clearance_min_m", "clearance", "expect.clearance", "unknown key"},
     {"axis_distance_m: 0.2", "axis_distance_m: far", "published.axis_distance_m", "finite number"},
     {"title: two", "? [a]\n: b\ntitle: two", "(not a text)", "unknown key"},
@@ -195,7 +198,7 @@ const Mistake kMistakes[] = {
     {"config: firmware", "config: [x", "", "line"},
 };
 
-void every_mistake_is_one_line_naming_file_and_key(void**) {
+void every_mistake_is_refused_with_one_line_that_names_file_and_key(void**) {
   for (const Mistake& mistake : kMistakes) {
     const std::string text = changed(mistake.from, mistake.to);
     const std::string message = message_of([&] { load(text); });
@@ -205,7 +208,7 @@ void every_mistake_is_one_line_naming_file_and_key(void**) {
   }
 }
 
-void files_that_are_no_scenario_are_refused_in_one_line(void**) {
+void files_that_are_no_scenario_are_refused_with_one_line(void**) {
   const std::string texts[] = {"",
                                "\n",
                                "just a text",
@@ -227,8 +230,8 @@ void files_that_are_no_scenario_are_refused_in_one_line(void**) {
   assert_true(one_line_with(message_of([] { load_scenario("host"); }), {"host: "}));
 }
 
-/// In the scenario: the left arm's base at x = -0.5 m, turned by pi, the right one's at 0.5 m.
-void each_of_several_arms_sees_the_world_from_its_base(void**) {
+/// In the scenario the base of the left arm is at x = -0.5 m, rotated by pi; the base of the right arm is at 0.5 m.
+void each_of_several_arms_has_the_world_in_its_base_frame(void**) {
   const std::vector<Scenario> arms = load_scenario("host/scenarios/two-arms.yaml");
   assert_int_equal(arms.size(), 2);
   const Scenario &left = arms[0], &right = arms[1];
@@ -237,14 +240,14 @@ void each_of_several_arms_sees_the_world_from_its_base(void**) {
   assert_string_equal(right.channels.controller_status.c_str(), "RIGHT_CONTROLLER_STATUS");
   check_near(left.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
   check_near(right.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
-  check_near(later(left.world, 3).target.motion.position_m, Vector3d(-0.55, 0.35, 0.75), 1e-15);
+  check_near(advanced(left.world, 3).target.motion.position_m, Vector3d(-0.55, 0.35, 0.75), 1e-15);
   check_near(left.world.obstacles[0].motion.velocity_mps, Vector3d(0, -0.2, 0), 1e-15);
   check_near(right.world.obstacles[0].motion.velocity_mps, Vector3d(0, 0.2, 0), 1e-15);
   const Vector3d axis = left.world.obstacles[1].motion.orientation * Vector3d::UnitZ();
   check_near(axis, Vector3d(-1, 0, 0), 1e-6);
 }
 
-void what_the_configuration_says_stands_there_is_part_of_the_world(void**) {
+void the_surroundings_of_the_configuration_are_part_of_the_world(void**) {
   const World world = load_scenario("host/scenarios/table.yaml").front().world;
   assert_int_equal(world.obstacles.size(), 2);
   assert_int_equal(world.surroundings.size(), 2);
@@ -256,16 +259,16 @@ void what_the_configuration_says_stands_there_is_part_of_the_world(void**) {
   assert_int_equal(world.all()[3].id, -3);
 }
 
-void the_rate_is_100_hz_unless_said_otherwise(void**) {
+void the_default_rate_is_100_hz(void**) {
   assert_int_equal(load(changed("rate_hz: 200\n", "")).period_us, 10'000);
 }
 
-void the_urdf_is_found_from_the_folder_of_the_scenario_upwards(void**) {
+void the_urdf_is_searched_in_the_folders_above_the_scenario(void**) {
   const Scenario s = load_scenario("host/scenarios/paper-a.yaml").front();
   assert_true(std::filesystem::equivalent(s.robot.urdf_file, "urdf/lwa3.urdf"));
 }
 
-void the_three_scenarios_of_the_paper(void**) {
+void the_scenarios_of_the_paper_have_its_values(void**) {
   const Scenario a = load_scenario("host/scenarios/paper-a.yaml").front(),
                  b = load_scenario("host/scenarios/paper-b.yaml").front(),
                  c = load_scenario("host/scenarios/paper-c.yaml").front();
@@ -295,15 +298,15 @@ void the_three_scenarios_of_the_paper(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_complete_scenario_arrives_value_by_value),
+      cmocka_unit_test(every_value_of_a_scenario_is_read),
       cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
-      cmocka_unit_test(every_mistake_is_one_line_naming_file_and_key),
-      cmocka_unit_test(files_that_are_no_scenario_are_refused_in_one_line),
-      cmocka_unit_test(each_of_several_arms_sees_the_world_from_its_base),
-      cmocka_unit_test(what_the_configuration_says_stands_there_is_part_of_the_world),
-      cmocka_unit_test(the_rate_is_100_hz_unless_said_otherwise),
-      cmocka_unit_test(the_urdf_is_found_from_the_folder_of_the_scenario_upwards),
-      cmocka_unit_test(the_three_scenarios_of_the_paper),
+      cmocka_unit_test(every_mistake_is_refused_with_one_line_that_names_file_and_key),
+      cmocka_unit_test(files_that_are_no_scenario_are_refused_with_one_line),
+      cmocka_unit_test(each_of_several_arms_has_the_world_in_its_base_frame),
+      cmocka_unit_test(the_surroundings_of_the_configuration_are_part_of_the_world),
+      cmocka_unit_test(the_default_rate_is_100_hz),
+      cmocka_unit_test(the_urdf_is_searched_in_the_folders_above_the_scenario),
+      cmocka_unit_test(the_scenarios_of_the_paper_have_its_values),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMany = 20000;
 
-void without_a_specification_the_truth_arrives_whole(void**) {
+void without_a_specification_the_values_are_unchanged(void**) {
   Sensing sensing({});
   const JointVector q_rad = JointVector::Constant(7, 0.3);
   for (int i = 0; i < 100; ++i) check_near(sensing.joints(q_rad).value(), q_rad, 0.0);
@@ -18,7 +18,7 @@ void without_a_specification_the_truth_arrives_whole(void**) {
   assert_true(sensing.target({}).has_value());
 }
 
-void noise_has_the_wanted_deviation_and_no_mean(void**) {
+void noise_has_the_specified_deviation_and_zero_mean(void**) {
   Sensing sensing({0.01, 0.02, 0.0, 3});
   double joint_sum = 0.0, joint_squares = 0.0, obstacle_squares = 0.0;
   for (int i = 0; i < kMany; ++i) {
@@ -33,7 +33,7 @@ void noise_has_the_wanted_deviation_and_no_mean(void**) {
   check_near(std::sqrt(obstacle_squares / kMany), 0.02, 6e-4);
 }
 
-void the_wanted_share_of_each_kind_of_message_is_lost(void**) {
+void the_specified_share_of_each_kind_of_message_is_lost(void**) {
   Sensing sensing({0.0, 0.0, 0.1, 5});
   int joints = 0, targets = 0, obstacles = 0;
   for (int i = 0; i < kMany; ++i) {
@@ -48,9 +48,9 @@ void the_wanted_share_of_each_kind_of_message_is_lost(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(without_a_specification_the_truth_arrives_whole),
-      cmocka_unit_test(noise_has_the_wanted_deviation_and_no_mean),
-      cmocka_unit_test(the_wanted_share_of_each_kind_of_message_is_lost),
+      cmocka_unit_test(without_a_specification_the_values_are_unchanged),
+      cmocka_unit_test(noise_has_the_specified_deviation_and_zero_mean),
+      cmocka_unit_test(the_specified_share_of_each_kind_of_message_is_lost),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

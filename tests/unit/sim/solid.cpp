@@ -26,7 +26,7 @@ Isometry3d lying(const Vector3d& position_m) {
 struct Case {
   const char* name;
   Solid a, b;
-  Isometry3d base_from_b;  // a stands at the origin
+  Isometry3d base_from_b;  // a is at the origin
   double distance_m;
   double tolerance_m;
 };
@@ -68,7 +68,7 @@ const Case kCases[] = {
     {"cube in cube", kCube, kCube, at({0.01, 0.17, 0.02}), -0.03, 1e-9},
 };
 
-void hand_worked_distances(void**) {
+void distances_agree_with_hand_computed_ones(void**) {
   for (const Case& c : kCases) {
     check_near_because(signed_distance_m(c.a, at({0, 0, 0}), c.b, c.base_from_b), c.distance_m, c.tolerance_m, "%s",
                        c.name);
@@ -82,7 +82,7 @@ Solid random_solid(Random& random) {
   return {shapes[random.index(4)], random.inside(0.01, 0.4)};
 }
 
-// A third of the poses on a grid with axes aligned: what degenerates does so there.
+// A third of the poses are on a grid with aligned axes, where degenerate cases occur.
 Isometry3d random_pose(Random& random) {
   Vector3d position_m = random.inside(-0.4, 0.4);
   if (!random.chance(1.0 / 3)) return Eigen::Translation3d(position_m) * random.turn();
@@ -103,8 +103,8 @@ void distances_are_finite_and_within_their_bounds(void**) {
   }
 }
 
-// A shift changes a distance by at most its length, so nothing may jump where surfaces touch.
-void distances_do_not_jump_from_apart_to_penetrating(void**) {
+// A shift changes a distance by at most the length of the shift, also where surfaces begin to touch.
+void distances_are_continuous_from_separated_to_penetrating(void**) {
   Random random(2);
   const Solid links[] = {kCylinder, kBall}, obstacles[] = {kBall, kCapsule};
   for (int trial = 0; trial < 400; ++trial) {
@@ -125,9 +125,9 @@ void distances_do_not_jump_from_apart_to_penetrating(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(hand_worked_distances),
+      cmocka_unit_test(distances_agree_with_hand_computed_ones),
       cmocka_unit_test(distances_are_finite_and_within_their_bounds),
-      cmocka_unit_test(distances_do_not_jump_from_apart_to_penetrating),
+      cmocka_unit_test(distances_are_continuous_from_separated_to_penetrating),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

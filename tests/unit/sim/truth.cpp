@@ -52,7 +52,7 @@ double to_segment_m(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   return (p - a - along * (b - a)).norm();
 }
 
-/// Of a point to the axes of the moving links; `fixed` takes the base column in.
+/// Distance of a point to the axes of the moving links and, with `fixed`, of the base column.
 double to_arm_m(const Vector3d& p, const JointVector& q_rad, bool fixed) {
   const auto s = stations(q_rad);
   const double moving_m =
@@ -60,13 +60,13 @@ double to_arm_m(const Vector3d& p, const JointVector& q_rad, bool fixed) {
   return fixed ? std::min(moving_m, to_segment_m(p, Vector3d::Zero(), s[0])) : moving_m;
 }
 
-void home_puts_the_tool_where_the_paper_says(void**) {
+void the_tool_at_home_is_at_the_position_of_the_paper(void**) {
   Truth truth = lwa3();
   truth.place(home_rad());
   check_near(truth.tool_m(), Vector3d(-0.328, 0, 0.9137), 1e-12);
 }
 
-void the_tool_agrees_with_the_table_of_the_paper_in_random_poses(void**) {
+void the_tool_agrees_with_the_dh_table_of_the_paper(void**) {
   Truth truth = lwa3();
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -76,14 +76,14 @@ void the_tool_agrees_with_the_table_of_the_paper_in_random_poses(void**) {
   }
 }
 
-void home_is_0_2490_m_from_the_third_obstacle(void**) {
+void the_arm_at_home_is_0_2490_m_from_the_third_obstacle(void**) {
   Truth truth = lwa3();
   truth.place(home_rad());
   check_near(truth.axis_distance_m(ball({-0.1, 0.1, 0.8})), 0.2490, 5e-5);
   check_near(truth.clearance_m(ball({-0.1, 0.1, 0.8})), 0.1490, 5e-5);
 }
 
-void clearance_agrees_with_capsules_in_random_poses(void**) {
+void clearance_agrees_with_capsules_in_random_configurations(void**) {
   Truth truth = lwa3();
   Random random(2);
   int touching = 0;
@@ -98,14 +98,14 @@ void clearance_agrees_with_capsules_in_random_poses(void**) {
     touching += clearance_m < 0;
     if (to_axis_m > 0.05) {
       check_near_because(clearance_m, expected_m, 1e-12, "trial %d", trial);
-    } else {  // the centre is inside the arm, whose cylinders and spheres are judged one by one
+    } else {  // the centre is inside the arm; the distance is that of single cylinders and spheres
       check(clearance_m < 0 && clearance_m >= expected_m - 1e-12, "trial %d: %g", trial, clearance_m);
     }
   }
-  check(touching > 200 && touching < 2800, "%d of 3000 touch: the trials prove nothing", touching);
+  check(touching > 200 && touching < 2800, "%d of 3000 touch: the trials do not cover both cases", touching);
 }
 
-void the_base_column_counts_for_clearance_but_not_for_the_paper(void**) {
+void the_base_column_counts_for_clearance_but_not_for_the_axis_distance(void**) {
   Truth truth = lwa3();
   truth.place(JointVector::Zero(7));
   const Obstacle low = ball({0.3, 0, 0});
@@ -114,8 +114,8 @@ void the_base_column_counts_for_clearance_but_not_for_the_paper(void**) {
   assert_string_equal(truth.nearest({low}).link.c_str(), "base_link");
 }
 
-/// A finger 0.2 m beyond the tool, on a slide; it stands where the slide's 0 is.
-void a_finger_below_the_tool_is_touched(void**) {
+/// A finger 0.2 m beyond the tool on a prismatic joint, which is at 0.
+void a_finger_below_the_tool_counts_for_clearance(void**) {
   const std::string finger = R"(<link name="finger"><collision><geometry><sphere radius="0.03"/></geometry></collision>
     </link><joint name="slide" type="prismatic"><parent link="tool"/><child link="finger"/><origin xyz="0 0 0.2"/>
     <axis xyz="0 1 0"/><limit lower="0" upper="0.04" velocity="1" effort="1"/></joint></robot>)";
@@ -127,7 +127,7 @@ void a_finger_below_the_tool_is_touched(void**) {
   assert_string_equal(truth.nearest({inside}).link.c_str(), "finger");
 }
 
-void boxes_and_capsules_beside_the_upright_arm(void**) {
+void clearance_of_boxes_and_capsules_agrees_with_hand_computed_ones(void**) {
   Truth truth = lwa3();
   truth.place(JointVector::Zero(7));
   Obstacle wall = ball({0.5, 0, 0.5});
@@ -142,7 +142,7 @@ void boxes_and_capsules_beside_the_upright_arm(void**) {
   check_near(truth.clearance_m(bar), 0.06 - 0.07, 1e-7);
 }
 
-void the_nearest_of_many_is_the_least_of_each(void**) {
+void the_nearest_obstacle_has_the_smallest_clearance(void**) {
   Truth truth = lwa3();
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
@@ -166,7 +166,7 @@ void the_nearest_of_many_is_the_least_of_each(void**) {
   }
 }
 
-void without_obstacles_nothing_is_near(void**) {
+void without_obstacles_the_clearance_is_infinite(void**) {
   Truth truth = lwa3();
   truth.place(home_rad());
   check_near(truth.nearest({}).clearance_m, kNothingNear, 0);
@@ -174,14 +174,14 @@ void without_obstacles_nothing_is_near(void**) {
   check_near(truth.axis_distance_m(std::vector<Obstacle>{}), kNothingNear, 0);
 }
 
-void links_are_where_another_arm_meets_them(void**) {
+void links_as_obstacles_are_in_the_frame_of_the_other_arm(void**) {
   Truth truth = lwa3(), other = lwa3();
   const auto apart_m = [&](double x_m) {
     Eigen::Isometry3d base_from_other = Eigen::Isometry3d::Identity();
     base_from_other.translation().x() = x_m;
     return truth.nearest(other.links(base_from_other)).clearance_m;
   };
-  for (const double q_rad : {0.0, 0.7}) {  // all alike: they are shifted copies
+  for (const double q_rad : {0.0, 0.7}) {  // both arms in the same configuration
     truth.place(JointVector::Constant(7, q_rad));
     other.place(JointVector::Constant(7, q_rad));
     assert_true(apart_m(0.0) < 0.0);
@@ -195,16 +195,16 @@ void links_are_where_another_arm_meets_them(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(links_are_where_another_arm_meets_them),
-      cmocka_unit_test(home_puts_the_tool_where_the_paper_says),
-      cmocka_unit_test(the_tool_agrees_with_the_table_of_the_paper_in_random_poses),
-      cmocka_unit_test(home_is_0_2490_m_from_the_third_obstacle),
-      cmocka_unit_test(clearance_agrees_with_capsules_in_random_poses),
-      cmocka_unit_test(the_base_column_counts_for_clearance_but_not_for_the_paper),
-      cmocka_unit_test(a_finger_below_the_tool_is_touched),
-      cmocka_unit_test(boxes_and_capsules_beside_the_upright_arm),
-      cmocka_unit_test(the_nearest_of_many_is_the_least_of_each),
-      cmocka_unit_test(without_obstacles_nothing_is_near),
+      cmocka_unit_test(links_as_obstacles_are_in_the_frame_of_the_other_arm),
+      cmocka_unit_test(the_tool_at_home_is_at_the_position_of_the_paper),
+      cmocka_unit_test(the_tool_agrees_with_the_dh_table_of_the_paper),
+      cmocka_unit_test(the_arm_at_home_is_0_2490_m_from_the_third_obstacle),
+      cmocka_unit_test(clearance_agrees_with_capsules_in_random_configurations),
+      cmocka_unit_test(the_base_column_counts_for_clearance_but_not_for_the_axis_distance),
+      cmocka_unit_test(a_finger_below_the_tool_counts_for_clearance),
+      cmocka_unit_test(clearance_of_boxes_and_capsules_agrees_with_hand_computed_ones),
+      cmocka_unit_test(the_nearest_obstacle_has_the_smallest_clearance),
+      cmocka_unit_test(without_obstacles_the_clearance_is_infinite),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

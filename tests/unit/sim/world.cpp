@@ -18,23 +18,23 @@ World moving_world() {
   return world;
 }
 
-void at_zero_nothing_has_moved(void**) {
-  const World world = later(moving_world(), 0);
+void after_zero_seconds_the_world_is_unchanged(void**) {
+  const World world = advanced(moving_world(), 0);
   check_near(world.target.motion.position_m, Eigen::Vector3d(1, 2, 3), 0);
   check_near(world.obstacles[0].motion.position_m, Eigen::Vector3d(0, 0, 0), 0);
 }
 
 void positions_follow_constant_velocities(void**) {
-  const World world = later(moving_world(), 2);
+  const World world = advanced(moving_world(), 2);
   check_near(world.target.motion.position_m, Eigen::Vector3d(1.2, 2, 2.6), 1e-15);
   check_near(world.obstacles[0].motion.position_m, Eigen::Vector3d(0, 1, 0), 1e-15);
   check_near(world.obstacles[0].motion.velocity_mps, Eigen::Vector3d(0, 0.5, 0), 0);
   assert_int_equal(world.obstacles[0].id, 7);
 }
 
-void a_half_turn_a_second_points_the_other_way_after_a_second(void**) {
+void rotation_by_constant_angular_velocity_is_exact(void**) {
   const auto axis_after = [](double dt_s) -> Eigen::Vector3d {
-    return later(moving_world(), dt_s).obstacles[0].motion.orientation * Eigen::Vector3d::UnitZ();
+    return advanced(moving_world(), dt_s).obstacles[0].motion.orientation * Eigen::Vector3d::UnitZ();
   };
   check_near(axis_after(0), Eigen::Vector3d(1, 0, 0), 1e-15);
   check_near(axis_after(0.5), Eigen::Vector3d(0, 1, 0), 1e-15);
@@ -42,16 +42,16 @@ void a_half_turn_a_second_points_the_other_way_after_a_second(void**) {
   check_near(axis_after(1000.5), Eigen::Vector3d(0, 1, 0), 1e-12);
 }
 
-void many_small_steps_lead_to_the_same_place(void**) {
+void small_steps_and_one_large_step_give_the_same_pose(void**) {
   World stepped = moving_world();
-  for (int i = 0; i < 1000; ++i) stepped = later(stepped, 0.001);
-  const World at_once = later(moving_world(), 1);
+  for (int i = 0; i < 1000; ++i) stepped = advanced(stepped, 0.001);
+  const World at_once = advanced(moving_world(), 1);
   const Motion &a = stepped.obstacles[0].motion, &b = at_once.obstacles[0].motion;
   check_near(a.position_m, b.position_m, 1e-12);
   check_near(a.orientation.coeffs(), b.orientation.coeffs(), 1e-12);
 }
 
-/// Out and up, back to where it was, and on; unevenly spaced.
+/// A path with waypoints at uneven times that returns to its start.
 Motion curved_motion() {
   const Path path{{0, {1, 2, 3}, {0.2, 0, 0}}, {0.5, {1.1, 2, 3.2}, {0, 0, 0.4}}, {0.8, {1, 2, 3}, {-0.3, 0.1, 0}}};
   Motion motion;
@@ -64,7 +64,7 @@ Motion curved_motion() {
 Motion curved_after(double dt_s) {
   World world;
   world.obstacles = {{1, {Shape::kSphere, {0.05, 0, 0}}, curved_motion()}};
-  return later(world, dt_s).obstacles[0].motion;
+  return advanced(world, dt_s).obstacles[0].motion;
 }
 
 void a_path_goes_through_its_waypoints(void**) {
@@ -79,7 +79,7 @@ void a_path_goes_through_its_waypoints(void**) {
   }
 }
 
-void half_way_between_two_waypoints(void**) {
+void position_and_velocity_half_the_time_between_two_waypoints(void**) {
   // Mean of the positions + duration / 8 * difference of the velocities; 1.5 mean velocity - quarter of their sum.
   const Motion motion = curved_after(0.25);
   check_near(motion.position_m, Eigen::Vector3d(1.05 + 0.0125, 2, 3.1 - 0.025), 1e-15);
@@ -90,8 +90,8 @@ void a_cubic_is_followed_exactly(void**) {
   const auto cubic = [](double t) -> Waypoint { return {t, {t * t * t, 1 - t * t, 2 * t}, {3 * t * t, -2 * t, 2}}; };
   const Path path{cubic(0), cubic(0.3), cubic(1)};
   for (double t_s = 0; t_s < 1; t_s += 0.01) {
-    check_near(along(path, t_s).position_m, cubic(t_s).position_m, 1e-15);
-    check_near(along(path, t_s).velocity_mps, cubic(t_s).velocity_mps, 1e-14);
+    check_near(waypoint_at(path, t_s).position_m, cubic(t_s).position_m, 1e-15);
+    check_near(waypoint_at(path, t_s).velocity_mps, cubic(t_s).velocity_mps, 1e-14);
   }
 }
 
@@ -104,28 +104,28 @@ void the_velocity_on_a_path_is_the_derivative_of_the_position(void**) {
   }
 }
 
-void after_its_end_a_path_goes_straight_on(void**) {
+void after_its_end_a_path_continues_at_constant_velocity(void**) {
   const Motion motion = curved_after(2.8);
   check_near(motion.position_m, Eigen::Vector3d(1 - 0.6, 2 + 0.2, 3), 1e-15);
   check_near(motion.velocity_mps, Eigen::Vector3d(-0.3, 0.1, 0), 0);
   const Path to_rest{{0, {0, 0, 0}, {1, 0, 0}}, {1, {0.5, 0, 0}, {0, 0, 0}}};
-  check_near(along(to_rest, 100).position_m, Eigen::Vector3d(0.5, 0, 0), 0);
-  check_near(along(to_rest, 100).velocity_mps, Eigen::Vector3d(0, 0, 0), 0);
+  check_near(waypoint_at(to_rest, 100).position_m, Eigen::Vector3d(0.5, 0, 0), 0);
+  check_near(waypoint_at(to_rest, 100).velocity_mps, Eigen::Vector3d(0, 0, 0), 0);
 }
 
-void a_target_follows_its_path_and_turns_at_its_constant_rate(void**) {
+void a_target_follows_its_path_with_constant_angular_velocity(void**) {
   World world;
   world.target.motion = curved_motion();
   world.target.motion.angular_velocity_radps = {0, 0, M_PI};
-  const Motion motion = later(world, 0.5).target.motion;
+  const Motion motion = advanced(world, 0.5).target.motion;
   check_near(motion.position_m, Eigen::Vector3d(1.1, 2, 3.2), 0);
   check_near(motion.orientation * Eigen::Vector3d::UnitX(), Eigen::Vector3d(0, 1, 0), 1e-15);
 }
 
-void many_small_steps_along_a_path_lead_to_the_same_place(void**) {
+void small_steps_along_a_path_end_at_the_same_position(void**) {
   World stepped;
   stepped.target.motion = curved_motion();
-  for (int i = 0; i < 700; ++i) stepped = later(stepped, 0.001);
+  for (int i = 0; i < 700; ++i) stepped = advanced(stepped, 0.001);
   check_near(stepped.target.motion.position_m, curved_after(0.7).position_m, 1e-12);
   check_near(stepped.target.motion.velocity_mps, curved_after(0.7).velocity_mps, 1e-12);
 }
@@ -134,17 +134,17 @@ void many_small_steps_along_a_path_lead_to_the_same_place(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(at_zero_nothing_has_moved),
+      cmocka_unit_test(after_zero_seconds_the_world_is_unchanged),
       cmocka_unit_test(positions_follow_constant_velocities),
-      cmocka_unit_test(a_half_turn_a_second_points_the_other_way_after_a_second),
-      cmocka_unit_test(many_small_steps_lead_to_the_same_place),
+      cmocka_unit_test(rotation_by_constant_angular_velocity_is_exact),
+      cmocka_unit_test(small_steps_and_one_large_step_give_the_same_pose),
       cmocka_unit_test(a_path_goes_through_its_waypoints),
-      cmocka_unit_test(half_way_between_two_waypoints),
+      cmocka_unit_test(position_and_velocity_half_the_time_between_two_waypoints),
       cmocka_unit_test(a_cubic_is_followed_exactly),
       cmocka_unit_test(the_velocity_on_a_path_is_the_derivative_of_the_position),
-      cmocka_unit_test(after_its_end_a_path_goes_straight_on),
-      cmocka_unit_test(a_target_follows_its_path_and_turns_at_its_constant_rate),
-      cmocka_unit_test(many_small_steps_along_a_path_lead_to_the_same_place),
+      cmocka_unit_test(after_its_end_a_path_continues_at_constant_velocity),
+      cmocka_unit_test(a_target_follows_its_path_with_constant_angular_velocity),
+      cmocka_unit_test(small_steps_along_a_path_end_at_the_same_position),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

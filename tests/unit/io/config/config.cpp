@@ -17,9 +17,9 @@ namespace {
 
 const char kRobot[] = "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}\n";
 
-/// Loads a configuration of the LWA3 and what else is said.
-Config load(const std::string& more) {
-  return load_config(scratch_file("config.yaml", kRobot + more), {});
+/// Loads a configuration of the LWA3 with additional YAML text.
+Config load(const std::string& yaml) {
+  return load_config(scratch_file("config.yaml", kRobot + yaml), {});
 }
 
 struct Key {
@@ -96,7 +96,7 @@ const Key kNumbers[] = {
     {"limits", "upper_rad", 1.5, [](const Config& c) { return c.model.arm.limits.upper_rad[6]; }},
 };
 
-void every_number_arrives_where_it_belongs(void**) {
+void each_number_sets_its_own_field_only(void**) {
   const Config plain = load("");
   for (const Key& key : kNumbers) {
     const std::string yaml = std::string(key.section) + ": {" + key.key + ": " + std::to_string(key.value) + "}\n";
@@ -111,7 +111,7 @@ void every_number_arrives_where_it_belongs(void**) {
   }
 }
 
-void every_word_arrives_where_it_belongs(void**) {
+void each_text_and_flag_sets_its_field(void**) {
   assert_true(load("law: paper").model.settings.law == Law::kPaper);
   assert_true(load("law: sidestep").model.settings.law == Law::kSidestep);
   assert_true(load("").model.settings.law == Law::kSidestep);
@@ -137,7 +137,7 @@ void every_word_arrives_where_it_belongs(void**) {
   assert_string_equal(load("blackbox: {folder: here}").blackbox.folder.c_str(), "here");
 }
 
-void a_dialect_brings_its_channels_and_its_patience(void**) {
+void the_iiwa_dialect_sets_channels_and_start_guard(void**) {
   const Config iiwa = load("dialect: iiwa\nchannels: {arm_command: MINE}");
   assert_string_equal(iiwa.channels.arm_state.c_str(), "IIWA_STATUS");
   assert_string_equal(iiwa.channels.arm_command.c_str(), "MINE");
@@ -145,7 +145,7 @@ void a_dialect_brings_its_channels_and_its_patience(void**) {
   check_near(load("").model.settings.start_guard_s, 0.0, 0);
 }
 
-void surroundings_arrive_with_shape_and_place(void**) {
+void surroundings_are_read_with_shape_and_pose(void**) {
   const std::vector<Obstacle> list = load(
                                          "surroundings:\n"
                                          "  - {shape: sphere, radius_m: 0.3, position_m: [1, 2, 3]}\n"
@@ -167,7 +167,7 @@ void surroundings_arrive_with_shape_and_place(void**) {
   assert_true(load("").model.surroundings.empty());
 }
 
-void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
+void the_lwa3_file_holds_the_defaults(void**) {
   const std::string error = message_of([] { load_config("firmware/config/lwa3.yaml", {}); });
   check(error.empty(), "%s", error.c_str());
   const Config file = load_config("firmware/config/lwa3.yaml", {}), defaults = load("");
@@ -178,19 +178,19 @@ void the_lwa3_file_loads_and_says_what_the_defaults_say(void**) {
   assert_string_equal(defaults.channels.controller_status.c_str(), "CONTROLLER_STATUS");
 }
 
-/// The starting values of paper-notes.md, "Parameters".
-void the_papers_parameters_start_from_the_values_written_down(void**) {
+/// The values of paper-notes.md, "Parameters".
+void the_lwa3_file_holds_the_documented_parameters_of_the_paper(void**) {
   const PaperGains g = load_config("firmware/config/lwa3.yaml", {}).model.settings.paper;
   const std::vector<double> actual = {
       g.k_pos_per_s2, g.k_vel_per_s, g.k_rpos_m2ps2, g.k_rvel_m2ps2, g.rho_0_m, g.rho_v_m, g.rho_min_m, g.v_max_mps,
       g.lambda_0,     g.sigma_0,     g.lambda_n,     g.x_m_mps,      g.d_m_m,   g.d_1_m,   g.d_2_m,     g.k_ori_per_s};
-  const std::vector<double> written = {20,   8.94, 0.5,  0.1, 0.25, 0.25, 0.02, 1,
-                                       0.08, 0.08, 0.05, 0.5, 0.3,  0.3,  0.1,  5};
-  assert_true(actual == written);
+  const std::vector<double> documented = {20,   8.94, 0.5,  0.1, 0.25, 0.25, 0.02, 1,
+                                          0.08, 0.08, 0.05, 0.5, 0.3,  0.3,  0.1,  5};
+  assert_true(actual == documented);
   assert_true(g.tool_velocity == ToolVelocity::kMeasured);
 }
 
-void limits_come_from_the_config_before_the_urdf(void**) {
+void limits_in_the_config_override_those_of_the_urdf(void**) {
   const JointLimits limits =
       load("limits:\n  velocity_radps: [1, 2, 3, 4, 5, 6, 7]\n  upper_rad: 1.25\n").model.arm.limits;
   check_near(limits.velocity_radps, JointVector::LinSpaced(7, 1, 7), 1e-12);
@@ -207,27 +207,27 @@ void position_limits_may_be_infinite(void**) {
   check_near(limits.upper_rad[1], 1.0, 0);
 }
 
-void the_command_line_has_the_last_word(void**) {
+void the_command_line_overrides_the_config(void**) {
   const std::string file = scratch_file("config.yaml", "robot: {urdf: nowhere.urdf, base: x, tip: y}\nlaw: sidestep\n");
   const Config config = load_config(file, {"paper", "tests/data/arm6.urdf", "foot", "tip"});
   assert_true(config.model.settings.law == Law::kPaper);
   assert_int_equal(config.model.arm.joints, 6);
 }
 
-void an_arm_can_be_tried_without_any_file(void**) {
+void an_arm_loads_without_a_config_file(void**) {
   const Config config = load_config("", {"", "tests/data/arm10.urdf", "l0", "l10"});
   assert_int_equal(config.model.arm.joints, 10);
   assert_true(config.model.settings.law == Law::kSidestep);
 }
 
-void an_empty_section_and_a_comment_change_nothing(void**) {
-  const Config config = load("# nothing\npaper:\nages: {}\nlimits: ~\n"), plain = load("");
+void empty_sections_and_comments_keep_the_defaults(void**) {
+  const Config config = load("# nothing\npaper:\ntimeouts: {}\nlimits: ~\n"), plain = load("");
   for (const Key& key : kNumbers)
     check_near_because(key.read(config), key.read(plain), 0, "%s.%s", key.section, key.key);
 }
 
-/// The nearest folder above the configuration wins; the working directory comes second.
-void the_urdf_is_looked_for_upwards(void**) {
+/// The nearest folder above the configuration comes first, the working directory second.
+void the_urdf_is_searched_in_the_folders_above_the_config(void**) {
   namespace fs = std::filesystem;
   const fs::path top = test::scratch_folder();
   fs::create_directories(top / "project/robots/one");
@@ -236,34 +236,35 @@ void the_urdf_is_looked_for_upwards(void**) {
   const std::string yaml = "robot: {urdf: arms/a.urdf, base: foot, tip: tip}\n";
   const std::string config = scratch_file("project/robots/one/config.yaml", yaml);
   const auto error = [&] { return message_of([&] { load_config(config, {}); }); };
-  check(!error().empty(), "found where there is none");
+  check(!error().empty(), "found although the file does not exist");
   scratch_file("project/arms/a.urdf", text);
   check(error().empty(), "%s", error().c_str());
-  // A nearer one that is broken is taken all the same: the search stops there.
+  // The nearest file is used even if it is not valid: the search ends there.
   fs::create_directories(top / "project/robots/arms");
   scratch_file("project/robots/arms/a.urdf", "broken");
   check(error().find("robots/arms/a.urdf") != std::string::npos, "'%s'", error().c_str());
   // From the working directory, which is the repository's root here.
-  const std::string elsewhere = scratch_file("project/two.yaml", replaced(yaml, "arms/a.urdf", "tests/data/arm6.urdf"));
-  check(message_of([&] { load_config(elsewhere, {}); }).empty(), "not found from the working directory");
+  const std::string other_urdf =
+      scratch_file("project/two.yaml", replaced(yaml, "arms/a.urdf", "tests/data/arm6.urdf"));
+  check(message_of([&] { load_config(other_urdf, {}); }).empty(), "not found from the working directory");
 }
 
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(every_number_arrives_where_it_belongs),
-      cmocka_unit_test(every_word_arrives_where_it_belongs),
-      cmocka_unit_test(a_dialect_brings_its_channels_and_its_patience),
-      cmocka_unit_test(surroundings_arrive_with_shape_and_place),
-      cmocka_unit_test(the_lwa3_file_loads_and_says_what_the_defaults_say),
-      cmocka_unit_test(the_papers_parameters_start_from_the_values_written_down),
-      cmocka_unit_test(limits_come_from_the_config_before_the_urdf),
+      cmocka_unit_test(each_number_sets_its_own_field_only),
+      cmocka_unit_test(each_text_and_flag_sets_its_field),
+      cmocka_unit_test(the_iiwa_dialect_sets_channels_and_start_guard),
+      cmocka_unit_test(surroundings_are_read_with_shape_and_pose),
+      cmocka_unit_test(the_lwa3_file_holds_the_defaults),
+      cmocka_unit_test(the_lwa3_file_holds_the_documented_parameters_of_the_paper),
+      cmocka_unit_test(limits_in_the_config_override_those_of_the_urdf),
       cmocka_unit_test(position_limits_may_be_infinite),
-      cmocka_unit_test(the_command_line_has_the_last_word),
-      cmocka_unit_test(an_arm_can_be_tried_without_any_file),
-      cmocka_unit_test(an_empty_section_and_a_comment_change_nothing),
-      cmocka_unit_test(the_urdf_is_looked_for_upwards),
+      cmocka_unit_test(the_command_line_overrides_the_config),
+      cmocka_unit_test(an_arm_loads_without_a_config_file),
+      cmocka_unit_test(empty_sections_and_comments_keep_the_defaults),
+      cmocka_unit_test(the_urdf_is_searched_in_the_folders_above_the_config),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -13,13 +13,13 @@ namespace {
 
 const char kRobot[] = "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}\n";
 
-std::string said(const std::string& text) {
+std::string error_of(const std::string& text) {
   const std::string file = scratch_file("config.yaml", text);
   return message_of([&] { load_config(file, {}); });
 }
 
-/// One line of a table: goes on with the others and counts 1 where it is wrong.
-int complain_unless(bool right, const char* yaml, const std::string& message) {
+/// Checks one entry of a table without ending the test; returns 1 when the entry fails.
+int report_unless(bool right, const char* yaml, const std::string& message) {
   if (!right) print_error("%s -> '%s'\n", yaml, message.c_str());
   return !right;
 }
@@ -122,19 +122,57 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"surroundings: [{shape: sphere, position_m: [0, 0, 0], radius_m: 1, edges_m: [1, 1, 1]}]",
        "surroundings[0].edges_m"},
       {"surroundings: [{shape: sphere, position_m: [0, 0, 1], radius_m: 1}, {}]", "surroundings[1].shape"},
-      // twice
-      {"law: paper\nlaw: paper", "law"},
-      {"paper: {d_1_m: 0.3, d_1_m: 0.3}", "paper.d_1_m"},
-      {"timeouts: {}\nages: {}", "timeouts"},
+      // null where a value is required
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 0], radius_m: ~}]", "surroundings[0].radius_m: is missing"},
+      {"surroundings: [{shape: box, position_m: [0, 0, 0], edges_m: [1, 1, 1], quaternion: ~}]",
+       "surroundings[0].quaternion"},
+      {"surroundings: [{shape: sphere, position_m: [0, 0, 0], radius_m: 1, quaternion: [1, 0, 0, 0]}]",
+       "surroundings[0].quaternion: unknown key"},
+      // given twice
+      {"law: paper\nlaw: paper", "law: is given twice"},
+      {"paper: {d_1_m: 0.3, d_1_m: 0.3}", "paper.d_1_m: is given twice"},
+      {"timeouts: {}\ntimeouts: {}", "timeouts: is given twice"},
       {"---\nlaw: paper", "second document"},
       {"...\n{law: paper}", "second document"},
   };
   int wrong = 0;
   for (const auto& bad : cases) {
-    const std::string message = said(std::string(kRobot) + bad.yaml + "\n");
-    wrong += complain_unless(one_line_with(message, {"config.yaml", bad.culprit}), bad.yaml, message);
+    const std::string message = error_of(std::string(kRobot) + bad.yaml + "\n");
+    wrong += report_unless(one_line_with(message, {"config.yaml", bad.culprit}), bad.yaml, message);
   }
   assert_int_equal(wrong, 0);
+}
+
+void a_renamed_key_is_refused_with_its_new_name(void**) {
+  const struct {
+    const char* yaml;
+    const char* error;
+  } cases[] = {
+      {"ages: {target_s: 1}", "config.yaml: ages: this key is now called 'timeouts'"},
+      {"ages: {}", "config.yaml: ages: this key is now called 'timeouts'"},
+      {"ages:", "config.yaml: ages: this key is now called 'timeouts'"},
+      {"timeouts: {old_place_s: 0.3}", "config.yaml: timeouts.old_place_s: this key is now called 'coast_s'"},
+      {"timeouts: {coast_s: 0.3, old_place_s: ~}",
+       "config.yaml: timeouts.old_place_s: this key is now called 'coast_s'"},
+  };
+  int wrong = 0;
+  for (const auto& bad : cases) {
+    const std::string message = error_of(std::string(kRobot) + bad.yaml + "\n");
+    wrong += report_unless(one_line_with(message, {bad.error}), bad.yaml, message);
+  }
+  assert_int_equal(wrong, 0);
+}
+
+void an_error_is_short_and_holds_no_control_characters(void**) {
+  const std::string long_name(100'000, 'x');
+  for (const std::string& yaml : {long_name + ": 1", "law: " + long_name, "paper: {" + long_name + ": 1}",
+                                  "channels: {target: [" + long_name + "]}", std::string("\"a\\nb\\x07\": 1"),
+                                  std::string("law: \"a\\nb\\x1b\"")}) {
+    const std::string message = error_of(kRobot + yaml + "\n");
+    check(one_line_with(message, {"config.yaml: "}) && message.size() < 600, "%.40s -> %zu characters", yaml.c_str(),
+          message.size());
+    for (const char c : message) check(c >= 0x20 && c != 0x7f, "%.40s -> character %d", yaml.c_str(), c);
+  }
 }
 
 void a_bad_robot_is_refused_with_one_line(void**) {
@@ -157,30 +195,30 @@ void a_bad_robot_is_refused_with_one_line(void**) {
   };
   int wrong = 0;
   for (const auto& bad : cases) {
-    const std::string message = said(bad.yaml);
-    wrong += complain_unless(one_line_with(message, {bad.culprit}), bad.yaml, message);
+    const std::string message = error_of(bad.yaml);
+    wrong += report_unless(one_line_with(message, {bad.culprit}), bad.yaml, message);
   }
   assert_int_equal(wrong, 0);
 }
 
-void a_name_too_long_for_a_file_is_no_file(void**) {
+void a_file_name_that_is_too_long_is_refused_with_one_line(void**) {
   const std::string name(5000, 'u');
   assert_true(
-      one_line_with(said("robot: {urdf: " + name + ", base: base_link, tip: tool}"), {name + ": cannot be read"}));
+      one_line_with(error_of("robot: {urdf: " + name + ", base: base_link, tip: tool}"), {name + ": cannot be read"}));
 }
 
-void what_is_no_yaml_is_refused_with_one_line(void**) {
+void text_that_is_not_yaml_is_refused_with_one_line(void**) {
   const std::string zeros(300, '\0'), deep(20000, '['), braces(20000, '{');
   for (const std::string& text :
        {std::string("robot: [1, 2"), std::string("a: b: c"), std::string("\t- x"), std::string("- a\n- b"),
         std::string("just words"), std::string("%YAML 9\n"), std::string("&a *a"), zeros,
         std::string("\xff\xfe\x00x", 4), std::string("*unknown"), std::string("? [a"), deep, braces}) {
-    const std::string message = said(text);
+    const std::string message = error_of(text);
     check(one_line_with(message, {"config.yaml"}), "%.40s -> '%.200s'", text.c_str(), message.c_str());
   }
 }
 
-void a_file_that_cannot_be_read_is_named(void**) {
+void an_unreadable_file_is_named_in_the_error(void**) {
   const std::string missing = message_of([] { load_config("no/such/file.yaml", {}); });
   check(one_line_with(missing, {"no/such/file.yaml"}), "'%s'", missing.c_str());
   const std::string folder = message_of([] { load_config("firmware/config", {}); });
@@ -193,11 +231,11 @@ void a_truncated_config_never_crashes(void**) {
   const std::string good = text_of("firmware/config/lwa3.yaml");
   int loaded = 0;
   for (size_t length = 0; length < good.size(); ++length) {
-    const std::string message = said(good.substr(0, length));
+    const std::string message = error_of(good.substr(0, length));
     check(message.empty() || one_line_with(message, {}), "%zu bytes: '%s'", length, message.c_str());
     loaded += message.empty();
   }
-  check(loaded > 100, "%d prefixes are configurations of their own", loaded);
+  check(loaded > 100, "only %d prefixes are valid configurations", loaded);
 }
 
 void a_scrambled_config_never_crashes(void**) {
@@ -207,7 +245,7 @@ void a_scrambled_config_never_crashes(void**) {
     std::string text = good;
     for (int change = random.index(5); change >= 0; --change)
       text[static_cast<size_t>(random.index(static_cast<int>(text.size())))] = static_cast<char>(random.bits());
-    const std::string message = said(text);
+    const std::string message = error_of(text);
     check(message.empty() || one_line_with(message, {}), "trial %d: '%s'", trial, message.c_str());
   }
 }
@@ -217,10 +255,12 @@ void a_scrambled_config_never_crashes(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_bad_config_is_refused_with_one_line_naming_file_and_key),
+      cmocka_unit_test(a_renamed_key_is_refused_with_its_new_name),
+      cmocka_unit_test(an_error_is_short_and_holds_no_control_characters),
       cmocka_unit_test(a_bad_robot_is_refused_with_one_line),
-      cmocka_unit_test(a_name_too_long_for_a_file_is_no_file),
-      cmocka_unit_test(what_is_no_yaml_is_refused_with_one_line),
-      cmocka_unit_test(a_file_that_cannot_be_read_is_named),
+      cmocka_unit_test(a_file_name_that_is_too_long_is_refused_with_one_line),
+      cmocka_unit_test(text_that_is_not_yaml_is_refused_with_one_line),
+      cmocka_unit_test(an_unreadable_file_is_named_in_the_error),
       cmocka_unit_test(a_truncated_config_never_crashes),
       cmocka_unit_test(a_scrambled_config_never_crashes),
   };

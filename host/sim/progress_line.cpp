@@ -1,4 +1,4 @@
-#include "host/sim/live.h"
+#include "host/sim/progress_line.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -28,10 +28,10 @@ const char* name_of(Mode mode) {
   return "?";
 }
 
-/// Nothing while the law alone will do.
-std::string outlook_of(const Status& status) {
+/// Empty while the law needs no guide.
+std::string foresight_text(const Status& status) {
   if (status.foresight == 1) return fmt::format(", guided {:.1f} s", status.guide_horizon_s);
-  return status.foresight == 2 ? ", no way known" : "";
+  return status.foresight == 2 ? ", no guide found" : "";
 }
 
 std::string bar(double done) {
@@ -48,23 +48,23 @@ size_t terminal_columns() {
 
 }  // namespace
 
-Live::Live(bool quiet, bool lockstep) : terminal_(isatty(STDERR_FILENO) != 0) {
+ProgressLine::ProgressLine(bool quiet, bool lockstep) : terminal_(isatty(STDERR_FILENO) != 0) {
   every_us_ = quiet ? 0 : terminal_ ? 100'000 : lockstep ? 0 : 1'000'000;
 }
 
-void Live::end() {
+void ProgressLine::end() {
   if (shown_ && terminal_) std::fputc('\n', stderr);
   shown_ = false;
 }
 
-bool Live::due() {
+bool ProgressLine::due() {
   const int64_t now_us = monotonic_us();
   if (every_us_ == 0 || now_us < next_us_) return false;
   next_us_ = now_us + every_us_;
   return true;
 }
 
-void Live::show(const std::string& line) {
+void ProgressLine::show(const std::string& line) {
   shown_ = true;
   if (terminal_) {
     fmt::print(stderr, "\r\x1b[K{}", line.substr(0, terminal_columns() - 1));
@@ -74,11 +74,11 @@ void Live::show(const std::string& line) {
   }
 }
 
-void Live::waiting(const std::string& for_what) {
+void ProgressLine::show_waiting(const std::string& for_what) {
   if (due()) show("waiting for " + for_what);
 }
 
-void Live::running(const std::vector<const Row*>& arms, double duration_s) {
+void ProgressLine::show_running(const std::vector<const Row*>& arms, double duration_s) {
   if (!due()) return;
   const double t_s = arms.front()->t_s;
   std::string line = fmt::format("{} {:.2f}/{:.2f} s", bar(t_s / duration_s), t_s, duration_s);
@@ -86,7 +86,7 @@ void Live::running(const std::vector<const Row*>& arms, double duration_s) {
     line += fmt::format("  {}target {:.3f} m  clearance {:.3f} m  {}{}  cycle {:.0f} us",
                         row->arm.empty() ? "" : row->arm + ": ", row->target_distance_m,
                         std::min(row->nearest.clearance_m, row->neighbour_m), name_of(row->status.mode),
-                        outlook_of(row->status), row->status.cycle_time_s * 1e6);
+                        foresight_text(row->status), row->status.cycle_time_s * 1e6);
   }
   show(line);
 }

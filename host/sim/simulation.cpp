@@ -1,4 +1,4 @@
-#include "host/sim/play.h"
+#include "host/sim/simulation.h"
 
 #include <algorithm>
 
@@ -11,24 +11,24 @@ bool tracks(const Run& run) {
 
 }  // namespace
 
-bool Play::answered() const {
+bool Simulation::answered() const {
   return std::all_of(runs.begin(), runs.end(), [](const Run& run) { return run.status().has_value(); });
 }
 
-bool Play::tracking() const {
+bool Simulation::tracking() const {
   return std::all_of(runs.begin(), runs.end(), tracks);
 }
 
-void Play::record() {
+void Simulation::record() {
   std::vector<const Row*> rows;
   for (Run& run : runs) {
     run.record(runs);
     rows.push_back(&run.row());
   }
-  live_.running(rows, scenario().duration_s());
+  progress_.show_running(rows, scenario().duration_s());
 }
 
-std::string Play::waits_for() const {
+std::string Simulation::waits_for() const {
   return std::find_if_not(runs.begin(), runs.end() - 1, tracks)->waits_for();
 }
 

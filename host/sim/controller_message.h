@@ -7,16 +7,16 @@
 
 namespace sidestep::sim {
 
-/// The values of controller_status_t.
+/// Values as in controller_status_t.
 enum class Mode { kWait = 0, kHold = 1, kTrack = 2, kBrake = 3, kFault = 4 };
 
-/// What the simulator uses of joint_command_t.
+/// The fields of joint_command_t that the simulator uses.
 struct Command {
   int64_t utime = 0;
-  Eigen::VectorXd qd_radps;  ///< any size, any value: not checked yet
+  Eigen::VectorXd qd_radps;  ///< unchecked: any size, any value
 };
 
-/// What the simulator uses of controller_status_t.
+/// The fields of controller_status_t that the simulator uses.
 struct Status {
   Mode mode = Mode::kWait;
   double cycle_time_s = 0.0;
@@ -29,7 +29,7 @@ struct Status {
   double guide_horizon_s = 0.0;
 };
 
-/// One message of the controller.
-using Answer = std::variant<Command, Status>;
+/// One message from the controller.
+using ControllerMessage = std::variant<Command, Status>;
 
 }  // namespace sidestep::sim

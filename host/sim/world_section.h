@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "firmware/io/config/yaml_section.h"
+#include "host/sim/world.h"
+
+namespace sidestep::sim {
+
+/// The section `target` of a scenario.
+Target read_target(YamlSection section);
+
+/// The list `obstacles` of a scenario.
+std::vector<Obstacle> read_obstacles(YamlSection& scenario);
+
+/// The list `surroundings` of a controller's configuration; empty when absent. Ids as in the controller's status.
+std::vector<Obstacle> read_surroundings(YamlSection& config);
+
+}  // namespace sidestep::sim
