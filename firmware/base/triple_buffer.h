@@ -5,18 +5,20 @@
 
 namespace sidestep {
 
-/// The latest value from one writing thread to one reading thread; neither ever waits. Three slots: the writer fills
-/// one, the reader keeps one, the third holds the newest complete value and is swapped with either.
+/// Passes the latest value from one writing thread to one reading thread; neither thread ever waits. There are three
+/// slots: the writer fills one, the reader reads one, and the third holds the newest complete value until the writer or
+/// the reader exchanges its slot for it. Values that are not read in time are overwritten.
 template <typename Value>
 class TripleBuffer {
  public:
-  /// Writer: the slot to fill. Its old content is arbitrary.
+  /// Writer: the slot to fill. It contains some earlier value.
   Value& draft() { return slots_[draft_]; }
 
   /// Writer: makes the draft the newest value.
   void post() { draft_ = middle_.exchange(static_cast<unsigned>(draft_) | kNew, std::memory_order_acq_rel) & kIndex; }
 
-  /// Reader: the newest value; stays valid and unchanged until the next call.
+  /// Reader: the newest posted value; a default-constructed one before the first post(). It stays valid and unchanged
+  /// until the next call of latest().
   const Value& latest() {
     if (middle_.load(std::memory_order_relaxed) & kNew)
       reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;
