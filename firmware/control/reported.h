@@ -7,9 +7,6 @@ namespace sidestep {
 
 /// From what somebody reports to the values of a cycle, whatever way it came.
 
-/// Values as in obstacle_t.
-enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
-
 /// An obstacle of that shape at rest; not plausible() when shape, size or turn make no sense. size_m as in obstacle_t.
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& turn, const Vector3& size_m);
 

@@ -4,26 +4,28 @@
 
 namespace sidestep {
 
-/// Joint velocities that the limits allow for the coming period, n x 1 each.
+/// The joint velocities that the limits allow for the coming period, n x 1 each.
 struct VelocityRange {
   JointVector lower_radps;
   JointVector upper_radps;
 };
 
-/// Velocities with which every joint, going on from the velocity last commanded, stays within its velocity and
-/// acceleration limits and can still stop before its position limits. Each joint is known to be between two positions
-/// (commanded and measured). Never empty: a joint that is past what its limits allow gets the one velocity that returns
-/// soonest.
+/// The velocities with which each joint stays within its velocity limit, differs from the last commanded velocity by at
+/// most acceleration limit x period, and can still stop before its position limits. Each joint is somewhere between two
+/// positions, lowest_rad and highest_rad (commanded and measured). Never empty: a joint that cannot meet all limits
+/// gets the one velocity that the acceleration limit allows and that returns it soonest.
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s);
 
-/// Velocities that every joint could come to and keep up for a while: its velocity limits, less what it needs to stop
-/// before its position limits. As velocity_range() without the accelerations.
+/// The sustainable range: velocity_range() without the limit on the change from the last velocity, which is what the
+/// joints can reach and keep for a while. Contains the velocity limits and the stopping distance to the position
+/// limits.
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 
-/// Largest velocity toward a limit gap_rad away from which the joint can stop within it, one period of travel included.
-/// Negative gap: past the limit, velocity back.
+/// The largest velocity v toward a position limit gap_rad away with v T + v^2 / (2 a) <= |gap|: after one more period
+/// at v, braking at a stops the joint at the limit. Has the sign of the gap: negative for a joint past its limit, which
+/// has to return. Infinite for an infinite gap.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);
 
 /// A velocity within the limits: one uniform scale for the velocity limits, which keeps the direction, then each joint

@@ -5,6 +5,7 @@
 
 #include "firmware/control/cycle.h"
 #include "firmware/io/lcm/dialect.h"
+#include "firmware/model/load/load_arm.h"
 
 namespace sidestep {
 

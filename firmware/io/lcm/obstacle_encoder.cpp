@@ -19,7 +19,7 @@ void encode_shape(int8_t shape, const Quaternion& turn, const Vector3& size_m, o
 }
 
 void encode_shape(const Obstacle& obstacle, obstacle_t& message) {
-  if (obstacle.is_box()) {
+  if (obstacle.shape == Shape::kBox) {
     const Box box = box_of(obstacle);
     return encode_shape(obstacle_t::BOX, Quaternion(box.axes), 2.0 * box.half_m, message);
   }

@@ -68,7 +68,7 @@ void what_moves_as_fast_as_it_may_is_no_jump(void**) {
 void an_axis_jumps_when_an_end_of_it_does(void**) {
   const Vector3 a(-0.5, 0, 0), b(0.5, 0, 0), c(0, 0.5, 0), d(0, -0.5, 0);
   const auto rod = [](const Vector3& start, const Vector3& end) {
-    return Obstacle{1, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
+    return Obstacle{1, Shape::kCapsule, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
   };
   Scene scene;
   scene.send({rod(a, b)});
