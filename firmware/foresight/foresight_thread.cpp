@@ -26,14 +26,14 @@ const Guide* ForesightThread::latest() {
 
 void ForesightThread::tell(const Inputs& inputs, const State& state, double now_s) {
   if (!on_) return;
-  look(model_, inputs, state, now_s, snapshots_.draft());
+  take_snapshot(model_, inputs, state, now_s, snapshots_.draft());
   snapshots_.post();
   if (!thinking_.joinable()) think();
 }
 
 void ForesightThread::think() {
   const Snapshot& snapshot = snapshots_.latest();
-  guides_.draft() = foresight_->think(snapshot);
+  guides_.draft() = foresight_->update(snapshot);
   guides_.post();
 }
 

@@ -49,8 +49,8 @@ class Controller : public Pilot {
     const Result result = timed_step(inputs, now_s, steering.cpu_s);
     state_ = result.next;
     if (foresees(model_.settings)) {
-      look(model_, inputs, state_, now_s, snapshot_);
-      guide_ = &foresight_.think(snapshot_);
+      take_snapshot(model_, inputs, state_, now_s, snapshot_);
+      guide_ = &foresight_.update(snapshot_);
     }
     steering.tracking = result.report.mode == Mode::kTrack;
     steering.velocity_radps = result.command.velocity_radps;

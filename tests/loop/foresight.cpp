@@ -13,7 +13,7 @@ using test::ClosedLoop;
 
 namespace {
 
-/// The closed loop with somebody who looks ahead; think() runs within the cycle, as in lockstep.
+/// The closed loop with somebody who looks ahead; update() runs within the cycle, as in lockstep.
 struct Foreseeing {
   ClosedLoop loop;
   std::unique_ptr<Foresight> foresight;
@@ -34,8 +34,8 @@ struct Foreseeing {
     const Result result = step(loop.model, loop.state, inputs, loop.now_s());
     loop.follow(result);
     if (foresight) {
-      look(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
-      guide = &foresight->think(*snapshot);
+      take_snapshot(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
+      guide = &foresight->update(*snapshot);
     }
     const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
     least_m = std::min(least_m, clearance_after(loop.model.arm, poses, loop.obstacles->obstacles.data(),
