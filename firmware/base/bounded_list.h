@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-/// A list of at most so many elements, stored in place. What it does not hold yet is not initialised: a cycle makes
-/// these lists anew and mostly holds few.
+/// A list of at most `capacity` elements, stored in place, without heap. The unused part of the storage is not
+/// initialised, because a control cycle constructs many of these lists and fills few of their places.
 template <typename T, int capacity>
 class BoundedList {
   static_assert(std::is_trivially_destructible_v<T>);
@@ -24,14 +24,14 @@ class BoundedList {
 
   int size() const { return size_; }
   bool is_full() const { return size_ == capacity; }
-  /// Only while it is not full.
+  /// Precondition: the list is not full. The capacity is not checked.
   void add(const T& element) { std::uninitialized_copy_n(&element, 1, data() + size_++); }
-  /// An element made of these.
+  /// Adds T{parts...}; same precondition as add().
   template <typename... Parts>
   void emplace(const Parts&... parts) {
     ::new (static_cast<void*>(data() + size_++)) T{parts...};
   }
-  /// Puts the last element in the place of another, which goes.
+  /// Removes element i; the last element takes its place, so the order changes.
   void remove(int i) { (*this)[i] = (*this)[--size_]; }
   void clear() { size_ = 0; }
 

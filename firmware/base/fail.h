@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// Throws std::runtime_error with a formatted line. For start-up. Names come from files and may hold anything: it stays
-/// one line.
+/// Throws std::runtime_error with a formatted message; for start-up only. Control characters (a name read from a file
+/// may contain any) are replaced by spaces, so that the message is always one line.
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
   std::string line = fmt::format(format, std::forward<Args>(args)...);

@@ -10,20 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the system cannot look up, as a name that is too long, is not there.
-bool is_file(const fs::path& file) {
-  std::error_code ignored;
-  return fs::is_regular_file(file, ignored);
-}
-
-fs::path find_upwards(fs::path folder, const fs::path& name) {
-  for (;; folder = folder.parent_path()) {
-    if (is_file(folder / name)) return folder / name;
-    if (folder == folder.root_path()) return {};
-  }
-}
-
-/// The files that this code may be running from: the program, or a library in a program of somebody else.
+/// The files that may contain this code: the running program, or a library that another program has loaded.
 std::array<fs::path, 2> own_files() {
   std::error_code ignored;
   Dl_info library{};
@@ -33,13 +20,30 @@ std::array<fs::path, 2> own_files() {
 
 }  // namespace
 
-std::string find_file(const std::string& name, const std::string& beside) {
-  fs::path found;
-  if (!beside.empty()) found = find_upwards(fs::absolute(beside).parent_path(), name);
-  if (found.empty()) found = find_upwards(fs::current_path(), name);
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::string folder_above(const std::string& folder) {
+  const fs::path above = fs::path(folder).parent_path();
+  return above == fs::path(folder) ? "" : above.string();
+}
+
+std::string find_upwards(const std::string& folder, const std::string& name) {
+  for (std::string above = folder; !above.empty(); above = folder_above(above))
+    if (const fs::path file = fs::path(above) / name; is_file(file.string())) return file.string();
+  return {};
+}
+
+std::string find_file(const std::string& name, const std::string& reference) {
+  std::string found;
+  if (!reference.empty()) found = find_upwards(fs::absolute(reference).parent_path().string(), name);
+  if (found.empty()) found = find_upwards(fs::current_path().string(), name);
+  const std::string shared = ("share/sidestep" / fs::path(name)).string();
   for (const fs::path& own : own_files())
-    if (found.empty()) found = find_upwards(fs::absolute(own).parent_path(), "share/sidestep" / fs::path(name));
-  return found.lexically_normal().string();
+    if (found.empty()) found = find_upwards(fs::absolute(own).parent_path().string(), shared);
+  return fs::path(found).lexically_normal().string();
 }
 
 }  // namespace sidestep

@@ -11,7 +11,7 @@ constexpr double kLeast_s = 1e-7;
 }  // namespace
 
 void Histogram::add(double duration_s) {
-  // In this order a NaN counts as the least.
+  // With the arguments of std::max in this order a NaN counts as kLeast_s.
   const double doublings = std::log2(std::max(kLeast_s, duration_s) / kLeast_s);
   ++bins_[static_cast<size_t>(std::min(doublings * kBinsPerDoubling, kBins - 1.0))];
   ++count_;

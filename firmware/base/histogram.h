@@ -5,14 +5,16 @@
 
 namespace sidestep {
 
-/// How often a duration was how long, in fixed bins: 16 for each doubling from 0.1 us to 1.7 s. Adding is bounded and
-/// allocates nothing.
+/// A histogram of durations with fixed logarithmic bins: 16 per doubling, from 0.1 us to 1.7 s. Durations outside that
+/// range (and NaN, as 0) count in the outermost bins. Adding takes constant time and allocates nothing.
 class Histogram {
  public:
   void add(double duration_s);
 
-  /// The duration, s, that this share (0 to 1) of all did not exceed: at most 4.4 % too high. 0 before the first.
+  /// The duration, s, that a share (0 to 1) of all durations did not exceed: never too low, at most 4.4 % (one bin) too
+  /// high. 0 for an empty histogram.
   double quantile_s(double share) const;
+  /// The longest duration, s, exact.
   double worst_s() const { return worst_s_; }
   int64_t count() const { return count_; }
 

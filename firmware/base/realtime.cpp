@@ -18,11 +18,11 @@ double seconds(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// More than the deepest call of the loop needs, far less than the limit of a thread's stack.
+// The part of the stack that is touched: more than the deepest call of the loop uses, far below a thread's stack limit.
 constexpr size_t kStack_bytes = 512 * 1024;
 
-// More than the threads and mailboxes come to that are made after the memory is locked.
-constexpr size_t kStillToCome_bytes = 128 << 20;
+// More than the threads and triple buffers take that are created after the memory is locked.
+constexpr size_t kAllocatedLater_bytes = 128 << 20;
 
 void touch_stack() {
   volatile char stack[kStack_bytes];
@@ -30,7 +30,7 @@ void touch_stack() {
   static_cast<void>(stack[0]);
 }
 
-/// Whether so much more could be locked: where all memory is, an allocation fails that would go over the limit.
+/// Whether so many bytes more could be locked. With all memory locked, an allocation beyond the limit fails.
 bool has_room(size_t bytes) {
   void* room = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (room != MAP_FAILED) munmap(room, bytes);
@@ -63,7 +63,7 @@ bool lock_memory(std::string& why_not) {
     why_not = std::strerror(errno);
     return false;
   }
-  if (!has_room(kStillToCome_bytes)) {
+  if (!has_room(kAllocatedLater_bytes)) {
     munlockall();
     why_not = "the limit of locked memory is too low";
     return false;

@@ -5,25 +5,27 @@
 
 namespace sidestep {
 
-/// The clocks and the real-time services of the machine; the only place besides main that knows them.
+/// The clocks and the real-time services of the operating system. No other file of the firmware uses them.
 
 /// Seconds on the monotonic clock.
 double monotonic_s();
 
-/// Seconds since 1970; may be set back and forth by others.
+/// Seconds since 1970; jumps when the system time is set. For time stamps only.
 double wall_s();
 
 /// CPU time that this thread has used, s.
 double thread_cpu_s();
 
-/// Sleeps until an instant of the monotonic clock; returns early when a signal comes.
+/// Sleeps until an instant of the monotonic clock, s. Returns early when a signal is delivered.
 void sleep_until(double instant_s);
 
-/// Locks all memory and touches the stack, so that the loop never waits for a page.
-/// Returns false, and why, when the machine does not permit it.
+/// Locks all present and future memory and touches 512 KiB of the stack, so that the loop never waits for a page fault.
+/// If the system does not permit it, or the limit leaves less than 128 MiB for later allocations: returns false and
+/// sets `why_not`.
 bool lock_memory(std::string& why_not);
 
-/// Puts the calling thread under the FIFO scheduler, 1 (low) to 99. Returns false, and why, when not permitted.
+/// Puts the calling thread under the FIFO scheduler with a priority of 1 (low) to 99. If the system does not permit it:
+/// returns false and sets `why_not`.
 bool use_fifo(int priority, std::string& why_not);
 
 }  // namespace sidestep

@@ -4,8 +4,8 @@
 
 namespace sidestep {
 
-/// The whole content. Throws std::runtime_error with one line that names the file when it cannot be read or is larger
-/// than any text a person or a generator writes, as what has no end is.
+/// The whole content of a file of at most 16 MB (larger ones, such as /dev/zero, are no text). Throws
+/// std::runtime_error with one line that names the file if the file cannot be read or is larger.
 std::string read_text_file(const std::string& file);
 
 }  // namespace sidestep

@@ -5,12 +5,13 @@
 
 namespace sidestep {
 
-/// Passes the newest value from one writing thread to one reading thread; neither ever waits. Of the three slots the
-/// writer fills one, the reader uses one, and the third holds the newest complete value and is swapped with either.
+/// Passes the latest value from one writing thread to one reading thread; neither thread ever waits. There are three
+/// slots: the writer fills one, the reader reads one, and the third holds the newest complete value until the writer or
+/// the reader exchanges its slot for it. Values that are not read in time are overwritten.
 template <typename Value>
 class TripleBuffer {
  public:
-  /// Writer: the slot to fill; its previous content is arbitrary.
+  /// Writer: the slot to fill. It contains some earlier value.
   Value& draft() { return slots_[draft_]; }
 
   /// Writer: makes the draft the newest value.
@@ -18,7 +19,8 @@ class TripleBuffer {
     draft_ = middle_.exchange(static_cast<unsigned>(draft_) | kNew, std::memory_order_acq_rel) & kIndex;
   }
 
-  /// Reader: the newest value; valid and unchanged until the next call.
+  /// Reader: the newest published value; a default-constructed one before the first. It stays valid and unchanged
+  /// until the next call of latest().
   const Value& latest() {
     if (middle_.load(std::memory_order_relaxed) & kNew)
       reading_ = middle_.exchange(reading_, std::memory_order_acq_rel) & kIndex;

@@ -5,31 +5,37 @@
 
 namespace sidestep {
 
-/// Whether these settings want foresight: it is on, and the law follows guides.
+/// Whether the settings use foresight: foresight.enabled with the sidestep law, the only law that follows guides.
 bool foresees(const Settings& settings);
 
-/// Looks ahead, finds that the law will not arrive or not stay, and finds a way that does. Large: lives on the heap.
+/// Detects by rollouts that the law would not arrive at the target or would collide, and searches for a guide that
+/// arrives. Large: lives on the heap.
 class Foresight {
  public:
   explicit Foresight(const Model& model) : model_(model), rollout_(model), planner_(model) {}
 
-  /// One call a cycle, of bounded work: judges the guide of the calls before, or looks for a better one. The guide is
-  /// for the cycles that follow. The same snapshots give the same guides.
+  /// One call per snapshot, of bounded work: at most two rollouts, or two plans. Every fifth call assesses the present
+  /// guide, and drops it if the law alone is better. While the assessment is not good, the other calls alternate
+  /// between a search for a candidate and its rollout; a candidate that costs at least 0.5 s less becomes the guide.
+  /// After more than 50 searches without a plan, the status is kWaiting if there is no guide and no arrival expected.
+  /// Returns the guide for the following cycles. A snapshot that is not tracking resets everything. The same sequence
+  /// of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
 
  private:
-  void judge(const Snapshot& now);
+  void reset();
+  void assess(const Snapshot& now);
   void search(const Snapshot& now);
-  void take(const Guide& guide, const Forecast& forecast);
+  void adopt(const Guide& guide, const Forecast& forecast);
 
   const Model& model_;
   Rollout rollout_;
   Planner planner_;
   int64_t calls_ = 0;
   Guide guide_;
-  Forecast expected_;  ///< under the guide
-  Guide candidate_;    ///< a way that looks clear, not yet played
-  int searching_ = 0;  ///< calls in vain
+  Forecast expected_;              ///< under guide_
+  Guide candidate_;                ///< a plan that has no rollout yet; no knots: none
+  int unsuccessful_searches_ = 0;  ///< since the guide was last changed or assessed as good
 };
 
 }  // namespace sidestep

@@ -1,5 +1,6 @@
 #include "firmware/foresight/inverse_kinematics.h"
 
+#include "firmware/model/damped_inverse.h"
 #include "firmware/model/kinematics.h"
 
 namespace sidestep {
@@ -11,13 +12,13 @@ constexpr double kDamping = 0.02;
 constexpr double kReached_m = 1e-3;
 constexpr double kReached_rad = 1e-2;
 
-/// What the tool lacks to the target: position (m), and orientation (rad) where it counts.
-TaskVector missing(const LinkPoses& poses, const Target& target) {
+/// From the tool to the target: position (m), and orientation (rad) where the target tracks it.
+TaskVector task_error(const LinkPoses& poses, const Target& target) {
   TaskVector error(target.tracks_orientation ? 6 : 3);
   error.head<3>() = target.position_m - poses.tool_position;
   if (!target.tracks_orientation) return error;
-  const Eigen::AngleAxisd turn(target.orientation.toRotationMatrix() * poses.tool_rotation.transpose());
-  error.tail<3>() = turn.angle() * turn.axis();
+  const Eigen::AngleAxisd to_goal = orientation_error(target.orientation, poses.tool_rotation);
+  error.tail<3>() = to_goal.angle() * to_goal.axis();
   return error;
 }
 
@@ -30,12 +31,9 @@ bool is_reached(const TaskVector& error) {
 bool solve_ik(const Arm& arm, const Target& target, JointVector& q_rad) {
   for (int step = 0; step < kMostSteps; ++step) {
     const LinkPoses poses = forward_kinematics(arm, q_rad);
-    const TaskVector error = missing(poses, target);
+    const TaskVector error = task_error(poses, target);
     if (is_reached(error)) return true;
-    const TaskJacobian jacobian = tool_jacobian(poses, static_cast<int>(error.size()));
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> gram = jacobian * jacobian.transpose();
-    gram.diagonal().array() += kDamping * kDamping;
-    JointVector change_rad = jacobian.transpose() * gram.ldlt().solve(error);
+    JointVector change_rad = damped_solve(tool_jacobian(poses, static_cast<int>(error.size())), kDamping, error);
     change_rad *= std::min(1.0, kLongestStep_rad / change_rad.cwiseAbs().maxCoeff());
     q_rad = (q_rad + change_rad).cwiseMax(arm.limits.lower_rad).cwiseMin(arm.limits.upper_rad);
   }

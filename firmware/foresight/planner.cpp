@@ -10,97 +10,113 @@
 namespace sidestep {
 namespace {
 
+// All constants are tuned on the witnessed campaign.
 constexpr int kTriesPerCall = 6;
-constexpr double kCheckEvery_s = 0.06;
-constexpr double kSpeedShare = 0.9;  // of the limits, so that the shield has something left
+constexpr double kSampleEvery_s = 0.06;
+constexpr double kLimitShare = 0.9;  // of the velocity and acceleration limits; the rest is left to the shield
+
+// The goal configuration: solve_ik() from a random start, in this share of the tries within so much of the present
+// configuration per joint, else anywhere.
+constexpr double kNearGoalShare = 0.4;
+constexpr double kNearGoal_rad = 0.8;
+constexpr double kAnywhere_rad = 2.0 * M_PI;
+
+// The share of the tries that pause before they start, and the longest pause.
+constexpr double kPauseShare = 0.25;
 constexpr double kLongestPause_s = 2.0;
 
-/// Where nothing is known of the range, one turn.
-double range(double limit_rad, double otherwise_rad) {
+// The share of the tries with an intermediate configuration, and its range around the present one per joint.
+constexpr double kDetourShare = 0.3;
+constexpr double kDetour_rad = 1.5;
+
+constexpr double kRetreat_rad = 1.0;  // the range of a retreat around the present configuration per joint
+
+// A guide ends so much before the horizon, so that the clearance at its end is known for as long.
+constexpr double kStayAtGoal_s = 1.0;
+
+// So much below the clearance at the start, and for so long, a guide may lead on the arm's path out.
+constexpr double kStartAllowance_m = 0.005;
+constexpr double kStartPhase_s = 0.5;
+
+/// A position limit; half a turn where a joint has none.
+double bounded(double limit_rad, double otherwise_rad) {
   return std::isfinite(limit_rad) ? limit_rad : otherwise_rad;
 }
 
 }  // namespace
 
-double SplitMix64::uniform(double lower, double upper) {
-  state_ += 0x9e3779b97f4a7c15ULL;
-  uint64_t z = state_;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  z ^= z >> 31;
-  return lower + (upper - lower) * static_cast<double>(z >> 11) * 0x1.0p-53;
-}
-
-JointVector Planner::random_configuration(const JointVector& around_rad, double reach_rad) {
+/// Uniformly distributed within range_rad of a configuration, per joint, and within the position limits.
+JointVector Planner::random_configuration(const JointVector& around_rad, double range_rad) {
   const JointLimits& limits = model_.arm.limits;
   JointVector q_rad = around_rad;
   for (Eigen::Index i = 0; i < q_rad.size(); ++i)
-    q_rad[i] = random_.uniform(std::max(range(limits.lower_rad[i], -M_PI), q_rad[i] - reach_rad),
-                               std::min(range(limits.upper_rad[i], M_PI), q_rad[i] + reach_rad));
+    q_rad[i] = random_.uniform(std::max(bounded(limits.lower_rad[i], -M_PI), q_rad[i] - range_rad),
+                               std::min(bounded(limits.upper_rad[i], M_PI), q_rad[i] + range_rad));
   return q_rad;
 }
 
-/// Goes on to a posture as fast as the limits allow with the guide's profile: at most 1.5 ways / duration in velocity
-/// and 6 ways / duration^2 in acceleration.
+/// A guide with one knot: the present configuration, now.
+Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
+  Guide guide;
+  guide.foresight_status = status;
+  guide.knots = 1;
+  guide.time_s[0] = from.now_s;
+  guide.position_rad[0] = from.arm.position_rad;
+  return guide;
+}
+
+/// Appends a knot as early as the limits allow: the profile of a guide reaches 1.5 distance / duration in velocity and
+/// 6 distance / duration^2 in acceleration.
 void Planner::append(Guide& guide, const JointVector& q_rad) const {
   const JointLimits& limits = model_.arm.limits;
-  const JointVector way_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();
-  const double by_velocity_s = 1.5 * way_rad.cwiseQuotient(limits.velocity_radps).maxCoeff();
-  const double by_acceleration_s = std::sqrt(6.0 * way_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff());
-  guide.time_s[guide.knots] = guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kSpeedShare;
+  const JointVector distance_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();
+  const double by_velocity_s = 1.5 * distance_rad.cwiseQuotient(limits.velocity_radps).maxCoeff();
+  const double by_acceleration_s = std::sqrt(6.0 * distance_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff());
+  guide.time_s[guide.knots] = guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kLimitShare;
   guide.position_rad[guide.knots++] = q_rad;
 }
 
-/// All along the guide and behind its end, up to the horizon.
+/// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).
 bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const ForesightSettings& settings = model_.settings.foresight;
-  // What is nearer already may stay so near, but no nearer.
   const double enough_m = settings.clearance_m;
-  const LinkPoses at_start = forward_kinematics(model_.arm, guide.position_rad[0]);
-  const double start_m =
-      clearance_after(model_.arm, at_start, from.nearby.obstacles.data(), from.nearby.count, 0.0, enough_m);
-  const double wanted_m = std::min(enough_m, start_m - 0.005);
-  for (double after_s = 0.0; after_s <= settings.horizon_s; after_s += kCheckEvery_s) {
-    const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad);
-    const double clear_m =
-        clearance_after(model_.arm, poses, from.nearby.obstacles.data(), from.nearby.count, after_s, enough_m);
-    if (clear_m < (after_s < 0.5 ? wanted_m : enough_m)) return false;
+  const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
+    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad), from.nearby.obstacles.data(),
+                           from.nearby.count, after_s, enough_m);
+  };
+  const double at_start_m = std::min(enough_m, clearance_at_m(guide.position_rad[0], 0.0) - kStartAllowance_m);
+  for (double after_s = 0.0; after_s <= settings.horizon_s; after_s += kSampleEvery_s) {
+    const double clear_m = clearance_at_m(point_of(guide, from.now_s + after_s).position_rad, after_s);
+    if (clear_m < (after_s < kStartPhase_s ? at_start_m : enough_m)) return false;
   }
   return true;
 }
 
-Guide Planner::to_target(const Snapshot& from) {
-  const double horizon_s = model_.settings.foresight.horizon_s;
-  const Target target = predicted_target(from.target, kTargetBelieved_s);
+Guide Planner::plan_to_target(const Snapshot& from) {
+  const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
+  const Target target = predicted_target(from.target, kTargetCoast_s);
   Guide best;
   for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
-    const double kind = random_.uniform(0.0, 1.0);
-    JointVector goal_rad = random_configuration(from.arm.position_rad, kind < 0.4 ? 0.8 : 2.0 * M_PI);
+    const bool near = random_.uniform(0.0, 1.0) < kNearGoalShare;
+    JointVector goal_rad = random_configuration(from.arm.position_rad, near ? kNearGoal_rad : kAnywhere_rad);
     if (!solve_ik(model_.arm, target, goal_rad)) continue;
 
-    Guide guide;
-    guide.foresight_status = ForesightStatus::kGuided;
-    guide.knots = 1;
-    guide.time_s[0] = from.now_s;
-    guide.position_rad[0] = from.arm.position_rad;
-    if (random_.uniform(0.0, 1.0) < 0.25) guide.time_s[0] += random_.uniform(0.0, kLongestPause_s);
-    if (random_.uniform(0.0, 1.0) < 0.3) append(guide, random_configuration(from.arm.position_rad, 1.5));
+    Guide guide = start_of(from, ForesightStatus::kGuided);
+    if (random_.uniform(0.0, 1.0) < kPauseShare) guide.time_s[0] += random_.uniform(0.0, kLongestPause_s);
+    if (random_.uniform(0.0, 1.0) < kDetourShare)
+      append(guide, random_configuration(from.arm.position_rad, kDetour_rad));
     append(guide, goal_rad);
-    if (guide.end_s() > from.now_s + horizon_s - 1.0) continue;
+    if (guide.end_s() > latest_end_s) continue;
     if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
     if (is_clear(from, guide)) best = guide;
   }
   return best;
 }
 
-Guide Planner::to_safety(const Snapshot& from) {
+Guide Planner::plan_retreat(const Snapshot& from) {
   for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
-    Guide guide;
-    guide.foresight_status = ForesightStatus::kWaiting;
-    guide.knots = 1;
-    guide.time_s[0] = from.now_s;
-    guide.position_rad[0] = from.arm.position_rad;
-    append(guide, random_configuration(from.arm.position_rad, 1.0));
+    Guide guide = start_of(from, ForesightStatus::kWaiting);
+    append(guide, random_configuration(from.arm.position_rad, kRetreat_rad));
     if (is_clear(from, guide)) return guide;
   }
   return {};

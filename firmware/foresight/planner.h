@@ -1,36 +1,37 @@
 #pragma once
 
+#include "firmware/base/split_mix64.h"
 #include "firmware/foresight/snapshot.h"
 
 namespace sidestep {
 
-/// Random numbers that are the same everywhere (SplitMix64).
-class SplitMix64 {
- public:
-  explicit SplitMix64(int64_t seed) : state_(static_cast<uint64_t>(seed)) {}
-  double uniform(double lower, double upper);
-
- private:
-  uint64_t state_;
-};
-
-/// Finds ways in joint space and time that keep clear of the obstacles as they move now: straight to a posture that has
-/// the target and can stay there, or by way of another one.
+/// Searches for guides by random sampling: joint paths in time that keep clear of the obstacles at their present
+/// velocities.
+///
+/// A guide leads from the present configuration at rest, possibly after a pause and through one intermediate
+/// configuration, to a goal configuration. Between two knots every joint moves with the profile 3u^2 - 2u^3
+/// (types/guide.h), as fast as 90 % of the velocity and acceleration limits allow. A guide is clear if the clearance of
+/// its configurations, sampled every 60 ms up to foresight.horizon_s, is at least foresight.clearance_m; in the first
+/// 0.5 s, at least 5 mm less than the lesser of that and the clearance at the start.
 class Planner {
  public:
   explicit Planner(const Model& model) : model_(model), random_(model.settings.foresight.seed) {}
 
-  /// Forgets what was thrown so far.
-  void start_over() { random_ = SplitMix64(model_.settings.foresight.seed); }
+  /// Restarts the random sequence from foresight.seed.
+  void reset() { random_ = SplitMix64(model_.settings.foresight.seed); }
 
-  /// Tries a few random ways and returns the one that arrives soonest; without knots when all fail. Bounded.
-  Guide to_target(const Snapshot& from);
+  /// Six tries for a guide to a configuration that has the target kTargetCoast_s from now and is reached at least 1 s
+  /// before the horizon. Returns the clear one that arrives soonest, ForesightStatus::kGuided; without knots if no try
+  /// succeeds.
+  Guide plan_to_target(const Snapshot& from);
 
-  /// Likewise to a place nearby where nothing will come, outlook kWaiting.
-  Guide to_safety(const Snapshot& from);
+  /// Six tries for a guide to a configuration within 1 rad per joint where the arm stays clear up to the horizon.
+  /// Returns the first clear one, ForesightStatus::kWaiting; without knots if no try succeeds.
+  Guide plan_retreat(const Snapshot& from);
 
  private:
-  JointVector random_configuration(const JointVector& around_rad, double reach_rad);
+  Guide start_of(const Snapshot& from, ForesightStatus status) const;
+  JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;
   void append(Guide& guide, const JointVector& q_rad) const;
 

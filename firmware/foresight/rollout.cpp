@@ -9,16 +9,17 @@
 namespace sidestep {
 namespace {
 
+// A coarse period bounds the work of one rollout. The period and the costs are tuned on the witnessed campaign.
 constexpr double kPeriod_s = 0.03;
 
 constexpr double kArrived_m = 0.01;
 constexpr double kArrived_rad = 0.05;
 
-// What must not be, in seconds away from the target.
-constexpr double kAwayInTheEnd_s = 5.0;
-constexpr double kCollision_s = 20.0;
+constexpr double kNoArrivalCost_s = 5.0;
+constexpr double kCollisionCost_s = 20.0;
 
-constexpr double kTooNear_m = 0.01;
+// A rollout is coarse: below this clearance a contact is assumed possible.
+constexpr double kCollisionClearance_m = 0.01;
 
 void advance(ObstacleSet& set, double dt_s) {
   for (int i = 0; i < set.count; ++i) set.obstacles[i] = extrapolated(set.obstacles[i], dt_s);
@@ -27,9 +28,8 @@ void advance(ObstacleSet& set, double dt_s) {
 }  // namespace
 
 Target predicted_target(const Target& target, double after_s) {
-  const double believed_s = std::min(after_s, kTargetBelieved_s);
-  Target then = extrapolated(target, believed_s);
-  if (after_s < kTargetBelieved_s) return then;
+  Target then = extrapolated(target, std::min(after_s, kTargetCoast_s));
+  if (after_s < kTargetCoast_s) return then;
   then.velocity_mps.setZero();
   then.angular_velocity_radps.setZero();
   return then;
@@ -43,7 +43,7 @@ bool is_at(const LinkPoses& poses, const Target& target) {
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
-  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles have grown already, and hold the surroundings
+  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles are grown already and contain the static ones
   coarse_.surroundings.clear();
 }
 
@@ -54,7 +54,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
-  arm.utime = state.arm_monitor.utime = 0;  // any clock will do
+  arm.utime = state.arm_monitor.utime = 0;  // step() uses only differences of utime
   Forecast forecast;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {
@@ -74,11 +74,11 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     forecast.arrives = is_at(poses, target);
     if (!forecast.arrives) forecast.cost_s += period_s;
     least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
-                                                period_s, kTooNear_m));
+                                                period_s, kCollisionClearance_m));
   }
-  forecast.collides = least_m < kTooNear_m;
-  if (!forecast.arrives) forecast.cost_s += kAwayInTheEnd_s;
-  if (forecast.collides) forecast.cost_s += kCollision_s;
+  forecast.collides = least_m < kCollisionClearance_m;
+  if (!forecast.arrives) forecast.cost_s += kNoArrivalCost_s;
+  if (forecast.collides) forecast.cost_s += kCollisionCost_s;
   return forecast;
 }
 

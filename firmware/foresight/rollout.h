@@ -5,20 +5,21 @@
 
 namespace sidestep {
 
-/// How a future turned out.
+/// The result of a rollout.
 struct Forecast {
-  bool arrives = false;   ///< is at the target in the end
-  bool collides = false;  ///< comes so near to an obstacle that it may touch
-  double cost_s = 0.0;    ///< time away from the target, and more for what must not be
+  bool arrives = false;   ///< the tool is at the target at the end
+  bool collides = false;  ///< the clearance falls below 10 mm; a contact is then assumed possible
+  double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + 20 s if it collides
 };
 
-/// Plays the future with the real step(), a coarser period and obstacles and target that go on as they move now. Large:
-/// lives on the heap.
+/// Simulates the next foresight.horizon_s seconds with the controller's own step() and an ideal arm, which follows each
+/// command exactly. The period is 30 ms, unless the controller's is longer. Obstacles keep their velocities; the target
+/// moves as predicted_target(). About 600 kB: lives on the heap.
 class Rollout {
  public:
   explicit Rollout(const Model& model);
 
-  /// From a snapshot on, under a guide, for the settings' horizon. No allocation; bounded by the horizon.
+  /// From a snapshot with tracking = true, under a guide (no knots: the law alone). No allocation.
   Forecast run(const Snapshot& from, const Guide& guide);
 
  private:
@@ -26,13 +27,13 @@ class Rollout {
   ObstacleSet obstacles_;
 };
 
-/// How far ahead a target is believed to keep its velocity.
-constexpr double kTargetBelieved_s = 1.0;
+/// For how long a target is assumed to keep its velocity.
+constexpr double kTargetCoast_s = 1.0;
 
-/// The target after a while.
+/// The target after_s later: it keeps its velocity for kTargetCoast_s and then rests.
 Target predicted_target(const Target& target, double after_s);
 
-/// Whether the tool is where the target asks for it.
+/// Whether the tool is within 10 mm of the target and, where the target tracks orientation, within 0.05 rad.
 bool is_at(const LinkPoses& poses, const Target& target);
 
 }  // namespace sidestep

@@ -7,20 +7,23 @@
 namespace sidestep {
 namespace {
 
-/// How near an obstacle comes to the base on its way, m.
-double nearest_to_base(const Obstacle& obstacle, double horizon_s) {
+/// The least distance of an obstacle's enclosing ball to the base origin within the horizon, m.
+double least_distance_to_base_m(const Obstacle& obstacle, double horizon_s) {
   const Vector3 centre = obstacle.capsule.centre();
-  const Vector3 on_way = nearest_on_segment(centre, centre + obstacle.velocity_mps * horizon_s, Vector3::Zero().eval());
-  return on_way.norm() - obstacle.capsule.extent_m();
+  const Vector3 on_path =
+      nearest_on_segment(centre, centre + obstacle.velocity_mps * horizon_s, Vector3::Zero().eval());
+  return on_path.norm() - obstacle.capsule.extent_m();
 }
 
-/// Keeps the obstacles that come nearest.
-class Nearest {
+/// Selects the obstacles with the least distance to the base.
+class NearestSelection {
  public:
-  Nearest(NearbyObstacles& nearby, double horizon_s) : nearby_(nearby), horizon_s_(horizon_s) { nearby_.count = 0; }
+  NearestSelection(NearbyObstacles& nearby, double horizon_s) : nearby_(nearby), horizon_s_(horizon_s) {
+    nearby_.count = 0;
+  }
 
   void consider(const Obstacle& obstacle) {
-    const double distance_m = nearest_to_base(obstacle, horizon_s_);
+    const double distance_m = least_distance_to_base_m(obstacle, horizon_s_);
     if (nearby_.count < kMaxNearbyObstacles) {
       distance_m_[nearby_.count] = distance_m;
       nearby_.obstacles[nearby_.count++] = obstacle;
@@ -48,7 +51,7 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   snapshot.arm = *inputs.arm.message;
   snapshot.target = extrapolated(inputs.target, now_s);
 
-  Nearest nearest(snapshot.nearby, model.settings.foresight.horizon_s);
+  NearestSelection nearest(snapshot.nearby, model.settings.foresight.horizon_s);
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);
   for (int i = 0; i < view.count(); ++i) nearest.consider(view.extrapolated(i));
 }

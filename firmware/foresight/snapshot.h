@@ -6,24 +6,25 @@ namespace sidestep {
 
 constexpr int kMaxNearbyObstacles = 64;
 
-/// The obstacles that may matter in the near future, as they are at one instant.
+/// Obstacles that may come near the arm soon, reported and static ones, at one instant.
 struct NearbyObstacles {
   int count = 0;
   std::array<Obstacle, kMaxNearbyObstacles> obstacles;
 };
 
-/// The world as one cycle saw it: what foresight thinks about.
+/// The input of foresight: the state of one control cycle and the world as that cycle extrapolated it.
 struct Snapshot {
-  bool tracking = false;  ///< the rest is valid
-  double now_s = 0.0;
-  State state;  ///< after the cycle
-  ArmState arm;
-  Target target;
-  NearbyObstacles nearby;
+  bool tracking = false;   ///< the mode is TRACK; if false, the other fields are not valid
+  double now_s = 0.0;      ///< of the cycle, on its clock
+  State state;             ///< after the cycle
+  ArmState arm;            ///< as received
+  Target target;           ///< extrapolated to now_s
+  NearbyObstacles nearby;  ///< extrapolated to now_s and grown by their uncertainty
 };
 
-/// What foresight needs of the inputs of a cycle and of the state it led to. Of more than kMaxMovers obstacles those
-/// that come nearest to the base within horizon_s. Bounded, without allocation.
+/// Fills `snapshot` from the inputs of a cycle and the state after it. Of more than kMaxNearbyObstacles obstacles those
+/// are kept that come nearest to the base within foresight.horizon_s at constant velocity, measured from their
+/// enclosing balls. Bounded; no allocation.
 void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot);
 
 }  // namespace sidestep

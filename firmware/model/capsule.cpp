@@ -12,7 +12,7 @@ NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b) {
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double per_uu = uu > 0.0 ? 1.0 / uu : 0.0, per_vv = vv > 0.0 ? 1.0 / vv : 0.0;
 
-  // Nearest on the infinite lines, clamped to a; then the nearest on b to that, clamped; then once more on a and on b.
+  // The nearest point of the infinite lines, clamped to a; then the nearest on b to it, clamped; then again on a and b.
   const double determinant = uu * vv - uv * uv;
   const bool parallel = determinant <= 1e-12 * uu * vv;
   double on_a = parallel ? 0.0 : std::clamp((uv * vw - vv * uw) / determinant, 0.0, 1.0);

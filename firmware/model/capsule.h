@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// All points within `radius_m` of the segment start-end. A sphere is a capsule whose ends coincide.
+/// All points within `radius_m` of the segment start-end, its axis. A capsule whose ends coincide is a sphere.
 struct Capsule {
   Vector3 start;
   Vector3 end;
@@ -24,7 +24,7 @@ struct NearestPoints {
   Vector3 b;
 };
 
-/// Point of the segment start-end that is nearest to p. All in one frame, m.
+/// The point of the segment start-end that is nearest to p. All in one frame, m.
 inline Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
   const Vector3 axis = end - start;
   const double length2 = axis.squaredNorm();
@@ -32,20 +32,22 @@ inline Vector3 nearest_on_segment(const Vector3& start, const Vector3& end, cons
   return start + std::clamp(axis.dot(p - start) / length2, 0.0, 1.0) * axis;
 }
 
-/// Nearest points of the axes of two capsules of some length; well defined for parallel ones too.
+/// Nearest points of the axes of two capsules that are no spheres. Parallel axes have several nearest pairs; one of
+/// them is returned.
 NearestPoints nearest_on_segments(const Capsule& a, const Capsule& b);
 
-/// Nearest points of the axes of any two capsules. Most obstacles are spheres, so that case comes first and inline.
+/// Nearest points of the axes of any two capsules. Most obstacles are spheres, so that case is inline and comes first.
 inline NearestPoints nearest_on_axes(const Capsule& a, const Capsule& b) {
   if (b.is_sphere()) return {nearest_on_segment(a.start, a.end, b.start), b.start};
   if (a.is_sphere()) return {a.start, nearest_on_segment(b.start, b.end, a.start)};
   return nearest_on_segments(a, b);
 }
 
-/// The capsule along the longest edge of a box, in the box's frame, that holds all eight corners. Edges in m.
+/// The capsule that encloses a box centred at the origin, in the box's frame. Its axis is the full longest edge; its
+/// radius reaches the corners. Edges in m.
 Capsule capsule_around_box(const Vector3& edges_m);
 
-/// Whether all of `inner` lies in `outer`.
+/// Whether all of `inner` lies in `outer`, with a tolerance of 1e-9 m.
 bool contains(const Capsule& outer, const Capsule& inner);
 
 }  // namespace sidestep

@@ -5,7 +5,7 @@
 namespace sidestep {
 namespace {
 
-/// A shape of the arm where it is.
+/// A link shape in the base frame.
 struct Link {
   Capsule capsule;
   Vector3 axis;
@@ -19,12 +19,12 @@ struct Link {
   }
 };
 
-/// The arm's shapes, and the box around their axes.
+/// The link shapes in the base frame, and the axis-aligned box around their axes.
 struct Links {
   BoundedList<Link, kMaxShapes> shapes;
   Vector3 lower = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 upper = -lower;
-  double radius_m = 0.0;  // the largest of the shapes
+  double radius_m = 0.0;  // the largest of all shapes
 
   Links(const Arm& arm, const LinkPoses& poses) {
     for (const LinkShape& shape : arm.shapes) {
@@ -37,24 +37,24 @@ struct Links {
       radius_m = std::max(radius_m, capsule.radius_m);
     }
   }
-  /// No axis of the arm is nearer to p than the square root of this.
+  /// A lower bound of the squared distance from p to any link axis.
   double distance2_m2(const Vector3& p) const { return (p - p.cwiseMax(lower).cwiseMin(upper)).squaredNorm(); }
 };
 
-/// How pressing a pair is: the nearer now or at its approach, the more.
-double pressing_m(const Proximity& now, const ClosestApproach& approach) {
+/// The distance by which pairs are selected: the lesser of the surface distances now and at the closest approach.
+double least_distance_m(const Proximity& now, const ClosestApproach& approach) {
   return std::min(now.distance_m, approach.distance_m);
 }
 
-double pressing_m(const NearPair& pair) {
-  return pressing_m(pair.now, pair.approach);
+double least_distance_m(const NearPair& pair) {
+  return least_distance_m(pair.now, pair.approach);
 }
 
 double square(double x) {
   return x * x;
 }
 
-/// Gathers a Clearance, obstacle by obstacle. Most pairs turn out not to matter by one comparison of squares.
+/// Computes a Clearance, obstacle by obstacle. One comparison of squared distances discards most pairs.
 class Gatherer {
  public:
   Gatherer(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach, Clearance& clearance)
@@ -73,13 +73,14 @@ class Gatherer {
   }
 
  private:
-  /// The distance to a link is a convex function of the place, so that it falls no faster on the way than at first.
+  /// The distance from a point to a link is a convex function of the point: along a straight path it never decreases
+  /// faster than the tangent at the start, horizon_s * closing speed in all.
   void gather_sphere(const Obstacle& obstacle, int index, double growth_m) {
     const Vector3& velocity_mps = obstacle.velocity_mps;
     const Vector3 centre = obstacle.capsule.start + velocity_mps * view_.age_s;
     const double radius_m = obstacle.capsule.radius_m + growth_m, radii_m = links_.radius_m + radius_m;
     const double travel_m = velocity_mps.norm() * horizon_s_;
-    double reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
+    double reach2_m2 = square(relevant_axis_distance_m(radii_m, 0.0, travel_m));
     if (links_.distance2_m2(centre) > reach2_m2) return;
 
     for (int s = 0; s < links_.shapes.size(); ++s) {
@@ -89,51 +90,44 @@ class Gatherer {
       if (distance2_m2 > reach2_m2) continue;
       const double distance_m = std::sqrt(distance2_m2);
       const double closing_m = std::max(0.0, std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m));
-      if (distance_m > reach_m(link, radii_m, closing_m)) continue;
+      if (distance_m > relevant_axis_distance_m(link, radii_m, closing_m)) continue;
       const Proximity now = proximity_of(link.capsule, radius_m, {centre - gap, centre}, -gap, distance_m);
-      look_at(s, index, now, velocity_mps, travel_m, [&] {
+      add_pair(s, index, now, velocity_mps, travel_m, [&] {
         if (closing_m == 0.0) return ClosestApproach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
         return predict_closest_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
       });
-      reach2_m2 = square(reach_m(radii_m, 0.0, travel_m));
+      reach2_m2 = square(relevant_axis_distance_m(radii_m, 0.0, travel_m));
     }
   }
 
+  /// Any obstacle that is no sphere: first discarded by the axis of its enclosing capsule.
   void gather_long(const Obstacle& obstacle, int index, double growth_m) {
     const Capsule& reported = obstacle.capsule;
     const Vector3 half_axis = 0.5 * (reported.end - reported.start);
-    const Length length = length_of(obstacle, half_axis.norm());
+    const double half_length_m = half_axis.norm(), core_m = core_reach_m(obstacle);
+    const double swing_mps = obstacle.angular_velocity_radps.norm() * (half_length_m + reported.radius_m);
     const Vector3 centre = reported.start + half_axis + obstacle.velocity_mps * view_.age_s;
-    const double core_m = length.core_m, travel_m = (obstacle.velocity_mps.norm() + length.swing_mps) * horizon_s_;
+    const double travel_m = (obstacle.velocity_mps.norm() + swing_mps) * horizon_s_;
     const double radii_m = links_.radius_m + reported.radius_m + growth_m;
-    if (links_.distance2_m2(centre) > square(length.half_m + reach_m(radii_m, core_m, travel_m))) return;
+    const double from_centre_m = half_length_m + relevant_axis_distance_m(radii_m, core_m, travel_m);
+    if (links_.distance2_m2(centre) > square(from_centre_m)) return;
 
     const Obstacle present = view_.extrapolated(index);
     for (int s = 0; s < links_.shapes.size(); ++s) {
       const Capsule& link = links_.shapes[s].capsule;
       const NearestPoints points = nearest_on_axes(link, present.capsule);
-      if ((points.a - points.b).squaredNorm() > square(reach_m(radii_m, core_m, travel_m))) continue;
+      if ((points.a - points.b).squaredNorm() > square(relevant_axis_distance_m(radii_m, core_m, travel_m))) continue;
       const Proximity now = measure_pair(link, present);
-      look_at(s, index, now, velocity_at(present, now.on_obstacle), travel_m,
-              [&] { return predict_closest_approach(link, present, now, horizon_s_); });
+      add_pair(s, index, now, velocity_at(present, now.on_obstacle), travel_m,
+               [&] { return predict_closest_approach(link, present, now, horizon_s_); });
     }
   }
 
-  /// What an obstacle has that is no sphere.
-  struct Length {
-    double half_m = 0.0;     ///< half its axis
-    double core_m = 0.0;     ///< how far a box reaches beyond its axis
-    double swing_mps = 0.0;  ///< what turning adds to the speed of its fastest point
-  };
-  static Length length_of(const Obstacle& obstacle, double half_m) {
-    const double radius_m = obstacle.capsule.radius_m;
-    return {half_m, obstacle.is_box() ? radius_m : 0.0, obstacle.angular_velocity_radps.norm() * (half_m + radius_m)};
-  }
-
-  /// velocity_mps: of the obstacle's nearest point. predict() says the approach of the pair.
+  /// Updates the results with one pair. travel_m: the farthest that any point of the obstacle moves within the horizon;
+  /// velocity_mps: of the obstacle's nearest point; predict() returns the pair's ClosestApproach.
   template <typename Predict>
-  void look_at(int shape, int obstacle, Proximity now, const Vector3& velocity_mps, double travel_m,
-               const Predict& predict) {
+  void add_pair(int shape, int obstacle, Proximity now, const Vector3& velocity_mps, double travel_m,
+                const Predict& predict) {
     now.shape = shape;
     now.obstacle = obstacle;
     if (now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = now;
@@ -141,41 +135,42 @@ class Gatherer {
     if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
     if (now.distance_m - travel_m > limit_m_) return;
     const ClosestApproach approach = predict();
-    if (pressing_m(now, approach) < limit_m_) keep(now, approach, velocity_mps);
+    if (least_distance_m(now, approach) < limit_m_) keep(now, approach, velocity_mps);
   }
 
-  /// Axes farther apart than this do not matter, with these radii, of which core_m are of a box, and as far as the
-  /// obstacle travels.
-  double reach_m(double radii_m, double core_m, double travel_m) const {
+  /// The axis distance beyond which a pair changes no result. radii_m: of the thickest link plus the obstacle's
+  /// enclosing capsule; core_m: core_reach_m() of the obstacle; travel_m: as in add_pair().
+  double relevant_axis_distance_m(double radii_m, double core_m, double travel_m) const {
     const double surface_m = std::max(clearance_.nearest.distance_m, limit_m_ + travel_m);
     return std::max(clearance_.nearest_axis.axis_distance_m + core_m, radii_m + surface_m);
   }
 
-  /// The same of one link: one that does not move can only be the nearest.
-  double reach_m(const Link& link, double radii_m, double travel_m) const {
-    return link.moves ? reach_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
+  /// The same for a sphere and one link: a link that does not move can only change Clearance::nearest.
+  double relevant_axis_distance_m(const Link& link, double radii_m, double travel_m) const {
+    return link.moves ? relevant_axis_distance_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
   }
 
-  /// As soon as the list is full, only what is more pressing than the least pressing there comes in, for that one.
+  /// Adds a pair to the list. Once the list is full, limit_m_ is the greatest distance in it, and a nearer pair
+  /// replaces the pair of that distance.
   void keep(const Proximity& now, const ClosestApproach& approach, const Vector3& velocity_mps) {
     auto& near = clearance_.near;
     if (near.is_full())
-      near[least_] = {now, approach, velocity_mps};
+      near[farthest_] = {now, approach, velocity_mps};
     else
       near.emplace(now, approach, velocity_mps);
     if (!near.is_full()) return;
-    const auto less = [](const NearPair& a, const NearPair& b) { return pressing_m(a) < pressing_m(b); };
-    least_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
-    limit_m_ = pressing_m(near[least_]);
+    const auto less = [](const NearPair& a, const NearPair& b) { return least_distance_m(a) < least_distance_m(b); };
+    farthest_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
+    limit_m_ = least_distance_m(near[farthest_]);
   }
 
   const Arm& arm_;
   const Links links_;
   const ObstacleView& view_;
   const double horizon_s_;
-  double limit_m_;  ///< pairs that do not come nearer are not kept
+  double limit_m_;  ///< pairs whose least distance is not below this are not kept
   Clearance& clearance_;
-  int least_ = 0;  ///< pressing pair of a full list
+  int farthest_ = 0;  ///< index of the pair with the greatest distance in a full list
 };
 
 }  // namespace

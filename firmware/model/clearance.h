@@ -8,49 +8,55 @@
 
 namespace sidestep {
 
-/// A pair that matters now or soon.
+/// A link shape and an obstacle that are near each other now or will be within the horizon.
 struct NearPair {
   Proximity now;
   ClosestApproach approach;
-  Vector3 velocity_mps = Vector3::Zero();  ///< of the obstacle's nearest point
+  Vector3 velocity_mps = Vector3::Zero();  ///< of the obstacle's material at now.on_obstacle
 };
 
 constexpr int kMaxNear = 64;
 
-/// The arm among its obstacles at one instant.
+/// Distances between the arm and its obstacles at one instant.
 struct Clearance {
-  Proximity nearest;                     ///< by surface distance, every shape of the arm
-  Proximity nearest_axis;                ///< by axis distance, moving shapes only (paper-notes item 7: A_0 and d_0)
-  BoundedList<NearPair, kMaxNear> near;  ///< the pairs within reach, the most pressing of too many, in no order
+  Proximity nearest;       ///< least surface distance, over all shapes of the arm
+  Proximity nearest_axis;  ///< least axis distance, over the moving shapes (paper-notes item 7: A_0 and d_0)
+
+  /// Pairs of moving shapes within the Reach, unordered. The distance of a pair is the lesser of its surface distances
+  /// now and at the closest approach. Of more than kMaxNear pairs those with the least distance are kept: a further
+  /// pair replaces the pair with the greatest distance.
+  BoundedList<NearPair, kMaxNear> near;
 };
 
-/// What is known of the obstacles: the last set, its age, and by how much each has to be grown, m, for what is not
-/// known; and behind them, by index, those that always stand there.
+/// The obstacles as they are known now: the newest set, its age, and the growth that covers what is uncertain. Indices
+/// from reported() on refer to the static obstacles of the configuration, which neither move nor grow.
 struct ObstacleView {
-  const ObstacleSet* set = nullptr;  ///< null: none
-  double age_s = 0.0;
-  double growth_m = 0.0;
-  const std::vector<Obstacle>* surroundings = nullptr;  ///< null: none
+  const ObstacleSet* set = nullptr;                     ///< null: no set was received
+  double age_s = 0.0;                                   ///< of the set
+  double growth_m = 0.0;                                ///< added to the radius of each obstacle of the set
+  const std::vector<Obstacle>* surroundings = nullptr;  ///< the static obstacles; null: none
 
   int reported() const { return set ? set->count : 0; }
   int count() const { return reported() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }
+  /// As reported: neither extrapolated nor grown.
   const Obstacle& at(int index) const {
     if (index < reported()) return set->obstacles[index];
     return (*surroundings)[index - reported()];
   }
   double growth_of(int index) const { return index < reported() ? growth_m : 0.0; }
-  /// Where it is later_s from now, and grown.
+  /// The obstacle later_s from now: extrapolated by age_s + later_s, and grown.
   Obstacle extrapolated(int index, double later_s = 0.0) const;
 };
 
-/// Which pairs are collected: those nearer than range_m now, or so near within horizon_s at constant velocity.
+/// Which pairs are collected: those with a surface distance below range_m now, or at the closest approach within
+/// horizon_s at constant velocity.
 struct Reach {
   double range_m;
   double horizon_s;
 };
 
-/// Distances of all link shapes to all obstacles, these moved forward to the present by their velocities. Work is
-/// bounded by shapes x obstacles; obstacles that stay far cost one comparison each.
+/// Distances of all link shapes to all obstacles, extrapolated to now and grown. Takes time proportional to shapes x
+/// obstacles at most; an obstacle farther away than matters for any result takes one comparison. No allocation.
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach);
 
 }  // namespace sidestep

@@ -10,11 +10,10 @@ JointAxes::JointAxes(const LinkPoses& poses) : joints_(poses.joints) {
 }
 
 JointVector JointAxes::row(int body, const Vector3& p_base, const Vector3& direction) const {
-  const Vector3 arguments = p_base.cross(direction);
+  const Vector3 moment = p_base.cross(direction);
   JointVector row(joints_);
-  for (int i = 0; i < body; ++i)
-    row.coeffRef(i) = lines_[i].direction.dot(arguments) + lines_[i].arguments.dot(direction);
-  for (int i = body; i < joints_; ++i) row.coeffRef(i) = 0.0;  // joints behind the body
+  for (int i = 0; i < body; ++i) row.coeffRef(i) = lines_[i].direction.dot(moment) + lines_[i].moment.dot(direction);
+  for (int i = body; i < joints_; ++i) row.coeffRef(i) = 0.0;  // joints beyond the body
   return row;
 }
 

@@ -4,20 +4,21 @@
 
 namespace sidestep {
 
-/// The axes of the joints in one posture as lines in the base frame, so that a row of a Jacobian is two dot products a
+/// The joint axes of one configuration as lines in the base frame. A row of a Jacobian then takes two dot products per
 /// joint.
 class JointAxes {
  public:
   explicit JointAxes(const LinkPoses& poses);
 
-  /// How fast a point of a body (m) moves along a unit direction over the joint velocities: point_jacobian()^T
-  /// direction, n x 1; it is the moment of the line through the point about each axis.
+  /// The derivative of the velocity of a body's point p_base (m) along a unit direction by the joint velocities, n x 1:
+  /// point_jacobian(poses, body, p_base)^T direction. Entry i is the moment about joint axis i of the line through
+  /// p_base along the direction; 0 for the joints beyond the body.
   JointVector row(int body, const Vector3& p_base, const Vector3& direction) const;
 
  private:
   struct Line {
     Vector3 direction;
-    Vector3 arguments;  ///< of the line about the origin, m
+    Vector3 moment;  ///< of the line about the origin, m
   };
   int joints_;
   std::array<Line, kMaxJoints> lines_;

@@ -5,7 +5,7 @@
 namespace sidestep {
 namespace {
 
-/// rotation * v by columns; Eigen's product of small matrices makes calls.
+/// rotation * v by columns, which is inlined; Eigen's product of small matrices is a function call.
 EIGEN_ALWAYS_INLINE Vector3 rotated(const Matrix3& rotation, const Vector3& v) {
   return rotation.col(0) * v[0] + rotation.col(1) * v[1] + rotation.col(2) * v[2];
 }
@@ -53,6 +53,10 @@ TaskJacobian tool_jacobian(const LinkPoses& poses, int rows) {
   if (rows == 6)
     for (int i = 1; i <= poses.joints; ++i) jacobian.col(i - 1).tail<3>() = poses.rotation[i].col(2);
   return jacobian;
+}
+
+Eigen::AngleAxisd orientation_error(const Quaternion& goal, const Matrix3& base_from_tool) {
+  return Eigen::AngleAxisd(goal.toRotationMatrix() * base_from_tool.transpose());
 }
 
 }  // namespace sidestep

@@ -6,26 +6,31 @@
 
 namespace sidestep {
 
-/// Where every body of the arm is at one joint position. Frames are expressed in the base frame.
+/// The poses of all bodies of the arm in one configuration, in the base frame.
 struct LinkPoses {
-  int joints = 0;
+  int joints = 0;                                ///< n
   std::array<Matrix3, kMaxJoints + 1> rotation;  ///< of body i; its z column is the axis of joint i
   std::array<Vector3, kMaxJoints + 1> origin;    ///< of body i, m; lies on the axis of joint i
   Matrix3 tool_rotation;
   Vector3 tool_position;  ///< m
 };
 
-/// Forward kinematics, q_rad n x 1. Held to KDL::ChainFkSolverPos_recursive by the tests.
+/// Forward kinematics, q_rad n x 1. The tests check it against KDL::ChainFkSolverPos_recursive.
 LinkPoses forward_kinematics(const Arm& arm, const JointVector& q_rad);
 
-/// A capsule of the arm, in the base frame.
+/// The capsule of a link shape in the base frame.
 Capsule transformed(const LinkPoses& poses, const LinkShape& shape);
 
-/// Velocity of the point p_base (m) of a body over the joint velocities: 3 x n; columns of joints behind the body are
-/// 0.
+/// The Jacobian of a body's point p_base (m): its velocity is this, 3 x n, times the joint velocities. The columns of
+/// joints beyond the body are 0.
 PointJacobian point_jacobian(const LinkPoses& poses, int body, const Vector3& p_base);
 
-/// Velocity of the tool over the joint velocities: rows = 3 (linear) or 6 (linear, then angular); rows x n.
+/// The Jacobian of the tool, rows x n, with rows = 3 (linear) or 6 (linear, then angular).
 TaskJacobian tool_jacobian(const LinkPoses& poses, int rows);
+
+/// The rotation, in the base frame, that turns the tool to the goal orientation (base_from_goal, a unit quaternion).
+/// The orientation error is the vector angle() * axis(), rad, with an angle from 0 to pi. A caller with a gain computes
+/// gain * angle() * axis().
+Eigen::AngleAxisd orientation_error(const Quaternion& goal, const Matrix3& base_from_tool);
 
 }  // namespace sidestep

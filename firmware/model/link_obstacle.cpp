@@ -4,6 +4,7 @@ namespace sidestep {
 
 Obstacle link_obstacle(const LinkPoses& poses, const LinkShape& shape, const JointVector& velocity_radps) {
   Obstacle link;
+  link.shape = Shape::kCapsule;
   link.capsule = transformed(poses, shape);
   const Vector3 centre = 0.5 * (link.capsule.start + link.capsule.end);
   link.velocity_mps = point_jacobian(poses, shape.body, centre) * velocity_radps;

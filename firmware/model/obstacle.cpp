@@ -1,5 +1,6 @@
 #include "firmware/model/obstacle.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sidestep {
@@ -29,16 +30,15 @@ Obstacle capsule_obstacle(const Vector3& centre, const Matrix3& rotation, double
 }
 
 Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vector3& edges_m) {
-  std::array<int, 3> axes{0, 1, 2};  // from the longest edge to the least
+  std::array<int, 3> axes{0, 1, 2};  // from the longest edge to the shortest
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return edges_m[a] > edges_m[b]; });
   const Vector3 half = 0.5 * Vector3(edges_m[axes[0]], edges_m[axes[1]], edges_m[axes[2]]);
   const Vector3 half_length = half[0] * rotation.col(axes[0]);
   Obstacle box;
-  box.shape = Shape::kCapsule;
   box.capsule = {centre - half_length, centre + half_length, std::hypot(half[1], half[2])};
-  const double line_m = 1e-6;  // what is thinner is a line, as the capsule
-  if (half[1] < line_m) return box;
-  box.shape = Shape::kBox;
+  const double line_m = 1e-6;  // a thinner box is stored as its enclosing capsule
+  box.shape = half[1] < line_m ? Shape::kCapsule : Shape::kBox;
+  if (box.shape == Shape::kCapsule) return box;
   box.half_width_m = half[1] * rotation.col(axes[1]);
   box.half_height_m = half[2];
   return box;

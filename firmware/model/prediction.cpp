@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// A link where it is, and the ball around it.
+/// A link shape in the base frame, and the ball around it.
 struct Link {
   Capsule capsule;
   Vector3 centre;
@@ -16,8 +16,8 @@ struct Link {
 };
 using Links = BoundedList<Link, kMaxShapes>;
 
-/// Those that can move.
-Links place_links(const Arm& arm, const LinkPoses& poses) {
+/// The shapes that move with a joint.
+Links moving_links(const Arm& arm, const LinkPoses& poses) {
   Links links;
   for (const LinkShape& shape : arm.shapes) {
     if (shape.body == 0) continue;
@@ -27,8 +27,8 @@ Links place_links(const Arm& arm, const LinkPoses& poses) {
   return links;
 }
 
-/// Least of least_m and what distance_m() says of the links, which is asked where the balls around them and around the
-/// obstacle are as near as that.
+/// The least of least_m and the distances of the links to an obstacle in the ball of extent_m around centre.
+/// distance_m(capsule, least_m) is called only for links whose ball is nearer to the obstacle's than least_m.
 template <typename Distance>
 double nearest_m(const Links& links, const Vector3& centre, double extent_m, double least_m,
                  const Distance& distance_m) {
@@ -56,7 +56,7 @@ double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double le
 
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
                        double enough_m) {
-  const Links links = place_links(arm, poses);
+  const Links links = moving_links(arm, poses);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];

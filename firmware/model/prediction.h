@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Least surface distance of the links that can move, at one posture, to `count` obstacles after_s later at constant
-/// velocity, m. Not more than enough_m: beyond that it is not looked at closely.
+/// The least surface distance, m, between the moving links in one configuration and `count` obstacles extrapolated by
+/// after_s. Exact below enough_m; else enough_m is returned, without the exact computation.
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
                        double enough_m);
 

@@ -3,62 +3,107 @@
 namespace sidestep {
 namespace {
 
-/// A box on its way past a link that stays where it is. Their distance is a convex function of the time, so that its
-/// tangents bound it from below.
-class BoxOnItsWay {
+/// Finds the closest approach of a convex obstacle that translates at constant velocity past a link at rest. Their
+/// distance is then a convex function of time, so that its tangents bound it from below: the search evaluates the
+/// distance where the tangents at both ends of the bracket meet, and keeps the nearest of all evaluated instants.
+///
+/// gap_after(time_s) returns the SegmentGap between the link's axis and the core at that time. radii_m is the sum of
+/// the link's radius and the core's inflation: surface distance = gap distance - radii_m.
+template <typename GapAfter>
+class TangentSearch {
  public:
-  BoxOnItsWay(const Capsule& link, const Obstacle& obstacle, const Proximity& now)
-      : link_(link),
-        box_(box_of(obstacle)),
-        velocity_mps_(velocity_at(obstacle, now.on_obstacle)),
-        radii_m_(link.radius_m + inflation_m(obstacle)),
-        least_{0.0, now.distance_m, std::numeric_limits<double>::infinity(), now.on_arm, now.normal} {}
+  TangentSearch(const Proximity& now, const Vector3& velocity_mps, double radii_m, const GapAfter& gap_after)
+      : velocity_mps_(velocity_mps),
+        radii_m_(radii_m),
+        gap_after_(gap_after),
+        now_{0.0, now.distance_m, -now.normal.dot(velocity_mps_)},
+        nearest_{0.0, now.distance_m, std::numeric_limits<double>::infinity(), now.on_arm, now.normal} {}
 
-  ClosestApproach closest(const Proximity& now, double horizon_s) {
-    Tangent low{0.0, now.distance_m, -now.normal.dot(velocity_mps_)};
-    if (low.slope_mps >= 0.0) return least_;
-    Tangent high = look(horizon_s);
-    for (int i = 0; i < kLooks && high.slope_mps > 0.0; ++i) {
+  ClosestApproach within(double horizon_s) {
+    Tangent low = now_;
+    if (low.slope_mps >= 0.0) return nearest_;
+    Tangent high = evaluate(horizon_s);
+    for (int i = 0; i < kCuts && high.slope_mps > 0.0; ++i) {
       const double lead_m =
           high.distance_m - low.distance_m + low.slope_mps * low.time_s - high.slope_mps * high.time_s;
-      const Tangent between = look(lead_m / (low.slope_mps - high.slope_mps));
+      const Tangent between = evaluate(lead_m / (low.slope_mps - high.slope_mps));
       (between.slope_mps < 0.0 ? low : high) = between;
     }
-    return least_;
+    return nearest_;
   }
 
  private:
-  static constexpr int kLooks = 4;
+  static constexpr int kCuts = 4;
 
   struct Tangent {
     double time_s, distance_m, slope_mps;
   };
 
-  Tangent look(double time_s) {
-    const BoxGap gap =
-        gap_to_box(link_.start, link_.end, {box_.centre + velocity_mps_ * time_s, box_.axes, box_.half_m});
+  Tangent evaluate(double time_s) {
+    const SegmentGap gap = gap_after_(time_s);
     const double distance_m = gap.distance_m - radii_m_;
-    if (distance_m < least_.distance_m)
-      least_ = {time_s, distance_m, least_.axis_distance_m, gap.on_segment, gap.normal};
+    if (distance_m < nearest_.distance_m)
+      nearest_ = {time_s, distance_m, nearest_.axis_distance_m, gap.on_segment, gap.normal};
     return {time_s, distance_m, -gap.normal.dot(velocity_mps_)};
   }
 
-  const Capsule& link_;
-  const Box box_;
   const Vector3 velocity_mps_;
   const double radii_m_;
-  ClosestApproach least_;
+  const GapAfter& gap_after_;
+  const Tangent now_;
+  ClosestApproach nearest_;
 };
 
-Proximity measure_box(const Capsule& link, const Obstacle& obstacle) {
-  const BoxGap gap = gap_to_box(link.start, link.end, box_of(obstacle));
-  Proximity pair;
-  pair.axis_distance_m = gap.distance_m;
-  pair.distance_m = gap.distance_m - link.radius_m - inflation_m(obstacle);
-  pair.on_arm = gap.on_segment;
-  pair.on_obstacle = gap.on_box;
-  pair.normal = gap.normal;
-  return pair;
+/// The core of a sphere or capsule: the axis of its capsule.
+struct AxisCore {
+  const Obstacle& obstacle;
+
+  double reach_m() const { return 0.0; }
+  Proximity proximity(const Capsule& link) const { return measure_pair(link, obstacle.capsule); }
+  double distance_m(const Capsule&, double to_capsule_m) const { return to_capsule_m; }
+  ClosestApproach closest_approach(const Capsule& link, const Proximity& now, double horizon_s) const {
+    return predict_closest_approach(link, obstacle.capsule.radius_m, now.on_obstacle,
+                                    velocity_at(obstacle, now.on_obstacle), horizon_s);
+  }
+};
+
+/// The core of a box. Any convex solid with a function that returns its SegmentGap can take its place.
+struct BoxCore {
+  const Obstacle& obstacle;
+
+  double reach_m() const { return obstacle.capsule.radius_m; }
+  Proximity proximity(const Capsule& link) const {
+    const SegmentGap gap = gap_to_box(link.start, link.end, box_of(obstacle));
+    Proximity pair;
+    pair.axis_distance_m = gap.distance_m;
+    pair.distance_m = gap.distance_m - link.radius_m - inflation_m(obstacle);
+    pair.on_arm = gap.on_segment;
+    pair.on_obstacle = gap.on_solid;
+    pair.normal = gap.normal;
+    return pair;
+  }
+  double distance_m(const Capsule& link, double) const { return proximity(link).distance_m; }
+  ClosestApproach closest_approach(const Capsule& link, const Proximity& now, double horizon_s) const {
+    const Box box = box_of(obstacle);
+    const Vector3 velocity_mps = velocity_at(obstacle, now.on_obstacle);
+    const auto gap_after = [&](double time_s) {
+      return gap_to_box(link.start, link.end, {box.centre + velocity_mps * time_s, box.axes, box.half_m});
+    };
+    return TangentSearch(now, velocity_mps, link.radius_m + inflation_m(obstacle), gap_after).within(horizon_s);
+  }
+};
+
+/// compute(core) with the core of the obstacle's shape: the one place where the shape decides what is computed.
+template <typename Compute>
+auto with_core(const Obstacle& obstacle, const Compute& compute) {
+  switch (obstacle.shape) {
+    case Shape::kBox:
+      return compute(BoxCore{obstacle});
+    case Shape::kSphere:
+    case Shape::kCapsule:
+      break;
+  }
+  return compute(AxisCore{obstacle});
 }
 
 }  // namespace
@@ -70,21 +115,23 @@ Proximity measure_pair(const Capsule& link, const Capsule& obstacle) {
 }
 
 Proximity measure_pair(const Capsule& link, const Obstacle& obstacle) {
-  return obstacle.is_box() ? measure_box(link, obstacle) : measure_pair(link, obstacle.capsule);
+  return with_core(obstacle, [&](const auto& core) { return core.proximity(link); });
 }
 
 double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double enough_m) {
   const NearestPoints points = nearest_on_axes(link, obstacle.capsule);
   const double to_capsule_m = (points.a - points.b).norm() - link.radius_m - obstacle.capsule.radius_m;
-  const bool will_do = to_capsule_m >= enough_m || !obstacle.is_box();
-  return will_do ? to_capsule_m : measure_box(link, obstacle).distance_m;
+  if (to_capsule_m >= enough_m) return to_capsule_m;
+  return with_core(obstacle, [&](const auto& core) { return core.distance_m(link, to_capsule_m); });
+}
+
+double core_reach_m(const Obstacle& obstacle) {
+  return with_core(obstacle, [](const auto& core) { return core.reach_m(); });
 }
 
 ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
                                          double horizon_s) {
-  if (obstacle.is_box()) return BoxOnItsWay(link, obstacle, now).closest(now, horizon_s);
-  return predict_closest_approach(link, obstacle.capsule.radius_m, now.on_obstacle,
-                                  velocity_at(obstacle, now.on_obstacle), horizon_s);
+  return with_core(obstacle, [&](const auto& core) { return core.closest_approach(link, now, horizon_s); });
 }
 
 ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, const Vector3& point,
@@ -98,7 +145,7 @@ ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, c
   const Vector3 gap = points.a - points.b;
   const double axis_distance_m = approach.axis_distance_m = gap.norm();
   approach.distance_m = axis_distance_m - link.radius_m - radius_m;
-  // A path through the axis itself can be left to either side; within this distance the side is not yet decided.
+  // A path through the axis itself can be avoided to either side; below this distance the side is still open.
   const double undecided_m = 0.005;
   approach.head_on = axis_distance_m < undecided_m;
   if (!approach.head_on) {

@@ -6,29 +6,31 @@
 
 namespace sidestep {
 
-/// One link shape and one obstacle. Points and directions in the base frame.
+/// One link shape and one obstacle at one instant, in the base frame. The points lie on the link's axis and on the
+/// obstacle's core (obstacle.h), not on the surfaces: on_arm = on_obstacle + axis_distance_m * normal.
 struct Proximity {
   int shape = -1;                                                    ///< index into Arm::shapes, -1 for none
   int obstacle = -1;                                                 ///< index into the ObstacleView
-  double distance_m = std::numeric_limits<double>::infinity();       ///< between surfaces, negative when they overlap
-  double axis_distance_m = std::numeric_limits<double>::infinity();  ///< between axes; a box is its own axis
-  Vector3 on_arm = Vector3::Zero();                                  ///< nearest point of the link's axis, m
-  Vector3 on_obstacle = Vector3::Zero();                             ///< nearest point of its axis or box, m
+  double distance_m = std::numeric_limits<double>::infinity();       ///< between surfaces, negative if they overlap
+  double axis_distance_m = std::numeric_limits<double>::infinity();  ///< from the link's axis to the core
+  Vector3 on_arm = Vector3::Zero();                                  ///< the link axis' nearest point, m
+  Vector3 on_obstacle = Vector3::Zero();                             ///< the core's nearest point, m
   Vector3 normal = Vector3::UnitZ();                                 ///< unit, from the obstacle to the arm
 };
 
-/// The closest that a moving obstacle will come to a link that stays where it is.
+/// The closest approach of a moving obstacle to a link at rest.
 struct ClosestApproach {
-  double time_s = 0.0;           ///< from now; 0 when it is not coming closer
-  double distance_m = 0.0;       ///< between surfaces then
-  double axis_distance_m = 0.0;  ///< between axes then; infinite for a box
-  Vector3 on_arm = Vector3::Zero();
-  Vector3 normal = Vector3::UnitZ();  ///< unit, from the obstacle to the arm then; across the obstacle's path
-  bool head_on = false;               ///< the path meets the link's axis, so that -normal would do as well
+  double time_s = 0.0;                ///< from now; 0 if the obstacle is not coming closer
+  double distance_m = 0.0;            ///< between surfaces at that time
+  double axis_distance_m = 0.0;       ///< between axes at that time; infinite for a box
+  Vector3 on_arm = Vector3::Zero();   ///< the link axis' nearest point at that time, m
+  Vector3 normal = Vector3::UnitZ();  ///< unit, from the obstacle to the arm at that time; if head_on, across the path
+  bool head_on = false;  ///< the path passes the link's axis within 5 mm: passing on the side of -normal is as good
 };
 
-/// The proximity of a link to an axis or point of that radius, whose nearest points are known, and the gap between them
-/// (from the obstacle to the arm) and its length; the normal is defined even where the axes meet.
+/// The Proximity (without its indices) of a link to a point or segment grown by radius_m, from their nearest points,
+/// the gap = points.a - points.b and its norm. Up to a gap of 1e-9 m the normal is a direction across the link (a
+/// sphere: z).
 inline Proximity proximity_of(const Capsule& link, double radius_m, const NearestPoints& points, const Vector3& gap,
                               double gap_m) {
   Proximity pair;
@@ -38,26 +40,34 @@ inline Proximity proximity_of(const Capsule& link, double radius_m, const Neares
   pair.distance_m = gap_m - link.radius_m - radius_m;
   if (gap_m > 1e-9)
     pair.normal = gap / gap_m;
-  else if (link.end != link.start)  // the axes meet: any way out across the link
+  else if (link.end != link.start)
     pair.normal = (link.end - link.start).unitOrthogonal();
   return pair;
 }
 
-/// The proximity of two placed capsules; the normal is defined even where the axes meet.
+/// The Proximity (without its indices) of a link, first, to a capsule, which may be another link: the normal points
+/// from the second to the first.
 Proximity measure_pair(const Capsule& link, const Capsule& obstacle);
 
-/// The same to an obstacle of any shape.
+/// The same for an obstacle of any shape.
 Proximity measure_pair(const Capsule& link, const Obstacle& obstacle);
 
-/// Between surfaces, m, as measure_pair() says. Exact below enough_m, else anything from there up to what it is.
+/// Distance between surfaces, m. Exact, as of measure_pair(), where it is below enough_m; else a lower bound of it that
+/// is itself at least enough_m. The bound is the distance to the enclosing capsule, which is much cheaper for a box.
 double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double enough_m);
 
-/// The closest approach within horizon_s at the velocity of the point that is nearest now: of that point, or of a whole
-/// box.
+/// By how much the obstacle's core can be nearer than the axis of its enclosing capsule, m: 0 for a sphere or capsule,
+/// the radius of `capsule` for a box. Lets a caller discard pairs by the distance between axes alone.
+double core_reach_m(const Obstacle& obstacle);
+
+/// The closest approach within horizon_s, from now = measure_pair(link, obstacle). The obstacle translates at the
+/// velocity of its point now.on_obstacle. Of a sphere or capsule only that point, grown by the radius, is followed:
+/// exact for the point. A box is followed as a whole, at no more than 5 instants up to horizon_s; the nearest of these
+/// and of `now` is returned, so that the true closest approach may be nearer, but never farther.
 ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
                                          double horizon_s);
 
-/// The same of a ball around a point.
+/// The closest approach of a ball of radius_m around a moving point; exact.
 ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, const Vector3& point,
                                          const Vector3& velocity_mps, double horizon_s);
 

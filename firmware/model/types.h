@@ -6,14 +6,14 @@ namespace sidestep {
 
 constexpr int kMinJoints = 6;
 constexpr int kMaxJoints = 10;
-constexpr int kMaxShapes = 64;  ///< of an arm
-constexpr int kMaxObstacles = 4096;
+constexpr int kMaxShapes = 64;       ///< collision shapes (capsules) of an arm
+constexpr int kMaxObstacles = 4096;  ///< in one obstacle set
 
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 
-/// Sized at run time, stored in place: none of these touches the heap.
+/// Sized at run time, stored in place: none of these types uses the heap.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints>;

@@ -4,26 +4,28 @@
 
 namespace sidestep {
 
-/// Bounds of the joint velocities, n x 1 each; lower <= upper.
+/// The joint velocities that the limits allow for the coming period, n x 1 each.
 struct VelocityRange {
   JointVector lower_radps;
   JointVector upper_radps;
 };
 
-/// Velocities for the next period with which every joint stays within its velocity and acceleration limits, starting
-/// from the last commanded velocity, and can still stop before its position limits. Each joint is known to lie between
-/// two positions (commanded and measured). Never empty: a joint that cannot keep its limits gets the one velocity that
-/// returns to them soonest.
+/// The velocities with which each joint stays within its velocity limit, differs from the last commanded velocity by at
+/// most acceleration limit x period, and can still stop before its position limits. Each joint is somewhere between two
+/// positions, lowest_rad and highest_rad (commanded and measured). Never empty: a joint that cannot meet all limits
+/// gets the one velocity that the acceleration limit allows and that returns it soonest.
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s);
 
-/// Velocities that every joint can sustain: its velocity limits, reduced near the position limits to what can be
-/// stopped before them. As velocity_range(), without the acceleration limits.
+/// The sustainable range: velocity_range() without the limit on the change from the last velocity, which is what the
+/// joints can reach and keep for a while. Contains the velocity limits and the stopping distance to the position
+/// limits.
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 
-/// Largest velocity toward a limit at distance gap_rad from which the joint can stop within the gap, one further period
-/// of travel included. For a negative gap (past the limit) the velocity points back.
+/// The largest velocity v toward a position limit gap_rad away with v T + v^2 / (2 a) <= |gap|: after one more period
+/// at v, braking at a stops the joint at the limit. Has the sign of the gap: negative for a joint past its limit, which
+/// has to return. Infinite for an infinite gap.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);
 
 }  // namespace sidestep

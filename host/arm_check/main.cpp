@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "firmware/control/types/settings.h"
-#include "firmware/model/arm.h"
 #include "firmware/model/kinematics.h"
+#include "firmware/model/load/load_arm.h"
 #include "firmware/model/load/self_pairs.h"
 
 namespace sidestep {

@@ -43,9 +43,9 @@ class StepController : public TrialController {
     ControllerOutput output;
     const Result result = timed_step(inputs, now_s, output.cpu_s);
     state_ = result.next;
-    if (foresees(model_.settings)) {
-      look(model_, inputs, state_, now_s, snapshot_);
-      guide_ = &foresight_.think(snapshot_);
+    if (model_.settings.foresight.enabled) {
+      take_snapshot(model_, inputs, state_, now_s, snapshot_);
+      guide_ = &foresight_.update(snapshot_);
     }
     output.tracking = result.report.mode == Mode::kTrack;
     output.velocity_radps = result.command.velocity_radps;

@@ -1,5 +1,5 @@
 // The loader of robot descriptions, for the chain from base_link to tool.
-#include "firmware/model/arm.h"
+#include "firmware/model/load/load_arm.h"
 #include "tests/fuzz/file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -28,7 +28,7 @@ inline PlacedSolid placed_solid(const Box& box) {
 }
 
 inline PlacedSolid placed_solid(const Obstacle& obstacle) {
-  return obstacle.is_box() ? placed_solid(box_of(obstacle)) : placed_solid(obstacle.capsule);
+  return obstacle.shape == Shape::kBox ? placed_solid(box_of(obstacle)) : placed_solid(obstacle.capsule);
 }
 
 /// Distance between surfaces as the simulator computes it, m.

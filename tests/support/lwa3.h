@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/model/arm.h"
+#include "firmware/model/load/load_arm.h"
 
 namespace sidestep::test {
 

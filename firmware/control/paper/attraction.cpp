@@ -1,5 +1,7 @@
 #include "firmware/control/paper/attraction.h"
 
+#include "firmware/model/kinematics.h"
+
 namespace sidestep {
 
 Vector3 attraction(const PaperGains& gains, const Target& target, const Vector3& tool_position_m,
@@ -9,7 +11,7 @@ Vector3 attraction(const PaperGains& gains, const Target& target, const Vector3&
 }
 
 Vector3 orientation_rate(const PaperGains& gains, const Target& target, const Matrix3& base_from_tool) {
-  const Eigen::AngleAxisd to_goal(target.orientation.toRotationMatrix() * base_from_tool.transpose());
+  const Eigen::AngleAxisd to_goal = orientation_error(target.orientation, base_from_tool);
   return target.angular_velocity_radps + gains.k_ori_per_s * to_goal.angle() * to_goal.axis();
 }
 

@@ -7,12 +7,6 @@ namespace {
 constexpr double kRankTolerance = 1e-6;
 }  // namespace
 
-double damping_squared(double lambda_0, double sigma_0, double sigma_m) {
-  if (sigma_m >= sigma_0) return 0.0;
-  const double share = 1.0 - sigma_m / sigma_0;
-  return lambda_0 * lambda_0 * share * share;
-}
-
 TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian) {
   const Eigen::JacobiSVD<TaskJacobian> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const auto& sigma = svd.singularValues();
@@ -30,11 +24,6 @@ TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian) {
     if (s > kRankTolerance * sigma[0]) inverse.null_space -= v * v.transpose();
   }
   return inverse;
-}
-
-JointVector damped_solve(const PointJacobian& a, double lambda, const Vector3& b) {
-  const Matrix3 gram = a * a.transpose() + lambda * lambda * Matrix3::Identity();
-  return a.transpose() * gram.ldlt().solve(b);
 }
 
 }  // namespace sidestep

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "firmware/control/types/settings.h"
-#include "firmware/model/types.h"
+#include "firmware/model/damped_inverse.h"
 
 namespace sidestep {
 
@@ -14,12 +14,6 @@ struct TaskInverse {
   JointVector operator*(const TaskVector& task_velocity) const { return damped_transposed.transpose() * task_velocity; }
 };
 
-/// lambda^2 of paper eq (6) for the smallest singular value sigma_m of the task Jacobian.
-double damping_squared(double lambda_0, double sigma_0, double sigma_m);
-
 TaskInverse invert(const PaperGains& gains, const TaskJacobian& jacobian);
-
-/// A^T (A A^T + lambda^2 I)^-1 b of a 3 x n matrix A.
-JointVector damped_solve(const PointJacobian& a, double lambda, const Vector3& b);
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 #include "firmware/io/lcm/channels.h"
 #include "firmware/io/lcm/dialect.h"
 #include "firmware/io/lcm/wire.h"
+#include "firmware/model/load/load_arm.h"
 
 namespace sidestep {
 

@@ -11,12 +11,13 @@ namespace sidestep {
 namespace {
 
 constexpr double kLeastRadius_m = 1e-4;
-constexpr double kMargin_m = 1e-9;   // more than rounding can take away
-constexpr double kWorthACut = 0.75;  // of the slack may remain after one more cut
-constexpr double kSlackThatMayStay_m = 0.01;
-constexpr int kDirections = 300;
+constexpr double kMargin_m = 1e-9;        // added to radii; more than the rounding error
+constexpr double kSlackLeftByCut = 0.75;  // a further cut must reduce the slack below this share
+constexpr double kSlackAccepted_m = 0.01;
+constexpr int kDirections = 300;  // in which the outermost points are sought
 
-/// Unit vectors, evenly over the part of the sphere above lowest_z: 0 for a half, -1 for all (a Fibonacci spiral).
+/// n unit vectors, evenly distributed over the part of the sphere above lowest_z (0: half of it, -1: all of it), on a
+/// Fibonacci spiral.
 std::vector<Vector3> directions(int n, double lowest_z) {
   std::vector<Vector3> found;
   for (int i = 0; i < n; ++i) {
@@ -27,20 +28,20 @@ std::vector<Vector3> directions(int n, double lowest_z) {
   return found;
 }
 
-/// The least capsule along a direction: as thick as the smallest circle around the points' shadow, as long as its round
-/// ends allow.
+/// The least capsule with a given axis direction: its radius is that of the smallest circle around the points'
+/// projection along the axis, and its ends are as near to each other as the round caps allow.
 Capsule capsule_along(const Vector3& axis, const std::vector<Vector3>& points) {
   const Vector3 u = axis.unitOrthogonal(), v = axis.cross(u);
-  std::vector<Eigen::Vector2d> shadow;
-  shadow.reserve(points.size());
-  for (const Vector3& p : points) shadow.emplace_back(u.dot(p), v.dot(p));
-  const Circle circle = circle_around(shadow);
+  std::vector<Eigen::Vector2d> projection;
+  projection.reserve(points.size());
+  for (const Vector3& p : points) projection.emplace_back(u.dot(p), v.dot(p));
+  const Circle circle = circle_around(projection);
   const double radius_m = std::max(circle.radius_m, kLeastRadius_m);
   const double infinity = std::numeric_limits<double>::infinity();
   double lower_m = infinity, upper_m = -infinity;
   for (size_t i = 0; i < points.size(); ++i) {
     const double along_m = axis.dot(points[i]);
-    const double cap_m = std::sqrt(std::max(0.0, radius_m * radius_m - (shadow[i] - circle.centre).squaredNorm()));
+    const double cap_m = std::sqrt(std::max(0.0, radius_m * radius_m - (projection[i] - circle.centre).squaredNorm()));
     lower_m = std::min(lower_m, along_m + cap_m);
     upper_m = std::max(upper_m, along_m - cap_m);
   }
@@ -54,7 +55,7 @@ double volume_m3(const Capsule& capsule) {
   return M_PI * r * r * ((capsule.end - capsule.start).norm() + 4.0 / 3.0 * r);
 }
 
-/// The points that lie farthest in some direction: few, and the search needs no others.
+/// The points that lie farthest in one of kDirections directions; the search for the axis uses only these.
 std::vector<Vector3> outermost(const std::vector<Vector3>& points) {
   std::vector<size_t> chosen;
   for (const Vector3& direction : directions(kDirections, -1.0)) {
@@ -71,7 +72,7 @@ std::vector<Vector3> outermost(const std::vector<Vector3>& points) {
   return found;
 }
 
-/// What of the mesh lies between two planes across an axis: corners of the cut triangles.
+/// The part of the mesh between two planes across an axis, as the corners of its cut triangles.
 std::vector<Vector3> slice(const Mesh& mesh, const Vector3& axis, double from_m, double to_m) {
   std::vector<Vector3> points;
   for (const Vector3& p : mesh.vertices)
@@ -81,8 +82,8 @@ std::vector<Vector3> slice(const Mesh& mesh, const Vector3& axis, double from_m,
       const Vector3& a = mesh.vertices[static_cast<size_t>(triangle[corner])];
       const Vector3& b = mesh.vertices[static_cast<size_t>(triangle[(corner + 1) % 3])];
       for (double cut_m : {from_m, to_m}) {
-        const double before_m = axis.dot(a) - cut_m, behind_m = axis.dot(b) - cut_m;
-        if (before_m * behind_m < 0.0) points.push_back(a + before_m / (before_m - behind_m) * (b - a));
+        const double from_a_m = axis.dot(a) - cut_m, from_b_m = axis.dot(b) - cut_m;
+        if (from_a_m * from_b_m < 0.0) points.push_back(a + from_a_m / (from_a_m - from_b_m) * (b - a));
       }
     }
   return points;
@@ -97,7 +98,7 @@ std::vector<Capsule> cut(const Mesh& mesh, const Vector3& axis, int slices) {
   std::vector<Capsule> capsules;
   const double each_m = (upper_m - lower_m) / slices;
   for (int i = 0; i < slices; ++i) {
-    // The outermost planes stand clear of the mesh, whatever rounding does.
+    // The outermost planes are 1 m outside of the mesh, so that rounding cannot cut any of it off.
     const double from_m = i == 0 ? lower_m - 1.0 : lower_m + i * each_m;
     const double to_m = i + 1 == slices ? upper_m + 1.0 : lower_m + (i + 1) * each_m;
     const std::vector<Vector3> points = slice(mesh, axis, from_m, to_m);
@@ -106,7 +107,7 @@ std::vector<Capsule> cut(const Mesh& mesh, const Vector3& axis, int slices) {
   return capsules;
 }
 
-/// Nearest point of a triangle to p: inside its edges by the plane, else on one of them.
+/// Distance from p to a triangle: to its plane if the projection of p is inside, else to the nearest edge.
 double distance_to_triangle_m(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 normal = (b - a).cross(c - a);
   const bool inside = normal.cross(b - a).dot(p - a) >= 0.0 && normal.cross(c - b).dot(p - b) >= 0.0 &&
@@ -130,7 +131,7 @@ double distance_m(const Vector3& p, const Mesh& mesh) {
   return least_m;
 }
 
-/// Points on the surface of a capsule: of both caps, and between them.
+/// Sample points on the surface of a capsule: on both caps and on the cylinder between them.
 std::vector<Vector3> surface(const Capsule& capsule) {
   std::vector<Vector3> points;
   const Vector3 axis = capsule.end - capsule.start;
@@ -163,11 +164,11 @@ double slack_m(const std::vector<Capsule>& capsules, const Mesh& mesh) {
 }  // namespace
 
 Capsule capsule_around(const std::vector<Vector3>& points) {
-  const std::vector<Vector3> few = outermost(points);
+  const std::vector<Vector3> outer = outermost(points);
   Vector3 axis = Vector3::UnitZ();
   double least_m3 = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Vector3& candidate) {
-    const double candidate_m3 = volume_m3(capsule_along(candidate, few));
+    const double candidate_m3 = volume_m3(capsule_along(candidate, outer));
     if (candidate_m3 < least_m3) least_m3 = candidate_m3, axis = candidate;
   };
   for (int i = 0; i < 3; ++i) consider(Vector3::Unit(i));
@@ -189,10 +190,10 @@ CapsuleFit fit_capsules(const Mesh& mesh, int most) {
   best.slack_m = slack_m(best.capsules, mesh);
   const Vector3 along = best.capsules.front().end - best.capsules.front().start;
   const Vector3 axis = along.norm() > kLeastRadius_m ? along.normalized() : Vector3(Vector3::UnitZ());
-  for (int slices = 2; slices <= most && best.slack_m > kSlackThatMayStay_m; ++slices) {
+  for (int slices = 2; slices <= most && best.slack_m > kSlackAccepted_m; ++slices) {
     CapsuleFit candidate{cut(mesh, axis, slices), 0.0};
     candidate.slack_m = slack_m(candidate.capsules, mesh);
-    if (candidate.slack_m < kWorthACut * best.slack_m) best = std::move(candidate);
+    if (candidate.slack_m < kSlackLeftByCut * best.slack_m) best = std::move(candidate);
   }
   return best;
 }

@@ -7,18 +7,19 @@
 
 namespace sidestep {
 
-/// Capsules that together enclose a mesh, in its frame.
+/// Capsules that together enclose a mesh, in the mesh's frame.
 struct CapsuleFit {
   std::vector<Capsule> capsules;
-  double slack_m = 0.0;  ///< how far the surface of the capsules is from the mesh at most, of points sampled on it
+  double slack_m = 0.0;  ///< largest distance from the capsules' outer surface to the mesh, at sampled points
 };
 
-/// The capsule of about the least volume that holds all points (at least one), m: its axis is searched for, its radius
-/// and ends then follow exactly.
+/// A capsule of nearly the least volume that contains all points (at least one), m. Its axis direction is the best of a
+/// search with refinement; its radius and ends are then the least for that direction.
 Capsule capsule_around(const std::vector<Vector3>& points);
 
-/// Encloses a mesh by one capsule, or cuts it across that capsule's axis into up to `most` slices with a capsule each
-/// where this reduces the slack clearly. Each capsule holds all of the mesh (and of its inside) between two cuts.
+/// Encloses a mesh by one capsule, or by up to `most` capsules, one for each of as many slices of equal thickness
+/// across the single capsule's axis. More slices are used only where the slack is above 10 mm and they reduce it below
+/// 75 %. Each capsule contains the mesh and its inside between two cuts.
 CapsuleFit fit_capsules(const Mesh& mesh, int most);
 
 }  // namespace sidestep

@@ -22,7 +22,8 @@ Circle through(const Point& a, const Point& b, const Point& c) {
   const Circle sides[] = {through(a, b), through(b, c), through(c, a)};
   const Circle& longest = *std::max_element(std::begin(sides), std::end(sides),
                                             [](const auto& l, const auto& r) { return l.radius_m < r.radius_m; });
-  if (std::abs(twice_area) <= 1e-12 * longest.radius_m * longest.radius_m) return longest;  // in one line
+  if (std::abs(twice_area) <= 1e-12 * longest.radius_m * longest.radius_m)
+    return longest;  // the points are on one line
   const Point to_centre = Point(ac.y() * ab.squaredNorm() - ab.y() * ac.squaredNorm(),
                                 ab.x() * ac.squaredNorm() - ac.x() * ab.squaredNorm()) /
                           (2.0 * twice_area);
@@ -32,7 +33,7 @@ Circle through(const Point& a, const Point& b, const Point& c) {
 }  // namespace
 
 Circle circle_around(std::vector<Point> points_m) {
-  std::shuffle(points_m.begin(), points_m.end(), std::mt19937(1));  // linear time on average, whatever the order was
+  std::shuffle(points_m.begin(), points_m.end(), std::mt19937(1));  // linear time on average for any order of the input
   Circle circle;
   if (!points_m.empty()) circle.centre = points_m.front();
   for (size_t i = 1; i < points_m.size(); ++i) {
@@ -45,7 +46,7 @@ Circle circle_around(std::vector<Point> points_m) {
         if (!holds(circle, points_m[k])) circle = through(points_m[i], points_m[j], points_m[k]);
     }
   }
-  // Nearly straight triples may leave a point outside by rounding.
+  // With three points nearly on one line, rounding may leave a point outside.
   for (const Point& p : points_m) circle.radius_m = std::max(circle.radius_m, (p - circle.centre).norm());
   return circle;
 }

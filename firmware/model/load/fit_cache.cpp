@@ -9,24 +9,20 @@
 #include <optional>
 #include <sstream>
 
+#include "firmware/base/hash.h"
+
 namespace sidestep {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kFitVersion = 1;  // to be raised when fit_capsules() gives other capsules
-
-/// FNV-1a.
-std::uint64_t hash(const void* bytes, size_t count, std::uint64_t seed = 14695981039346656037u) {
-  for (size_t i = 0; i < count; ++i) seed = (seed ^ static_cast<const unsigned char*>(bytes)[i]) * 1099511628211u;
-  return seed;
-}
+constexpr std::uint64_t kFitVersion = 1;  // raise it whenever fit_capsules() changes its results
 
 std::uint64_t hash_of(const Mesh& mesh, int most) {
-  std::uint64_t value = hash(&kFitVersion, sizeof(kFitVersion));
-  value = hash(&most, sizeof(most), value);
-  value = hash(mesh.vertices.data(), mesh.vertices.size() * sizeof(mesh.vertices[0]), value);
-  return hash(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]), value);
+  std::uint64_t value = fnv1a(&kFitVersion, sizeof(kFitVersion));
+  value = fnv1a(&most, sizeof(most), value);
+  value = fnv1a(mesh.vertices.data(), mesh.vertices.size() * sizeof(mesh.vertices[0]), value);
+  return fnv1a(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]), value);
 }
 
 fs::path folder() {
@@ -35,13 +31,13 @@ fs::path folder() {
   return {};
 }
 
-/// One line: a hash of the rest, the slack, then seven numbers a capsule. Hexadecimal floats lose nothing.
+/// One line: a hash of the rest, the slack, then seven numbers per capsule, as hexadecimal floats, which are exact.
 std::string to_text(const CapsuleFit& fit) {
   std::string body = fmt::format("{:a}", fit.slack_m);
   for (const Capsule& c : fit.capsules)
     for (double value : {c.start.x(), c.start.y(), c.start.z(), c.end.x(), c.end.y(), c.end.z(), c.radius_m})
       body += fmt::format(" {:a}", value);
-  return fmt::format("{:016x} {}\n", hash(body.data(), body.size()), body);
+  return fmt::format("{:016x} {}\n", fnv1a(body.data(), body.size()), body);
 }
 
 std::optional<CapsuleFit> read(const fs::path& file) {
@@ -56,7 +52,7 @@ std::optional<CapsuleFit> read(const fs::path& file) {
   fit.slack_m = values[0];
   for (size_t i = 1; i < values.size(); i += 7)
     fit.capsules.push_back({Vector3(values.data() + i), Vector3(values.data() + i + 3), values[i + 6]});
-  if (to_text(fit) != line + "\n") return {};  // cut off or altered: the hash does not fit
+  if (to_text(fit) != line + "\n") return {};  // truncated or altered: the hash does not match
   return fit;
 }
 

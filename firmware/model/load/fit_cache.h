@@ -4,8 +4,8 @@
 
 namespace sidestep {
 
-/// fit_capsules(), remembered on disk by what the mesh is and `most`: in $XDG_CACHE_HOME/sidestep, else
-/// ~/.cache/sidestep. A broken entry is made anew; without a folder to write to nothing is remembered.
+/// fit_capsules() with a cache on disk, in $XDG_CACHE_HOME/sidestep, else ~/.cache/sidestep. The key is a hash of the
+/// mesh and `most`. A damaged entry is computed and written again. Without a writable folder nothing is stored.
 CapsuleFit fit_capsules_cached(const Mesh& mesh, int most);
 
 }  // namespace sidestep

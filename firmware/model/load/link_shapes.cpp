@@ -19,7 +19,8 @@ Eigen::Isometry3d to_eigen(const urdf::Pose& pose) {
 
 namespace {
 
-/// A table top in a single capsule would take the room above it: cuts the box across its second edge.
+/// Divides a box across its second longest edge into at most 8 strips about as wide as the box is thick, with one
+/// capsule each: a single capsule around a table top would fill the space above it.
 std::vector<Capsule> capsules_around_strips(const Vector3& edges_m) {
   constexpr int kMostStrips = 8;
   int across = 0, flat = 0;
@@ -58,7 +59,7 @@ CapsuleFit ShapeCollector::enclose_mesh(const urdf::Link& link, const urdf::Mesh
   }
 }
 
-/// The capsules around one collision shape, in the frame of the shape.
+/// The capsules that enclose one collision shape, in the frame of the shape.
 CapsuleFit ShapeCollector::enclose(const urdf::Link& link, const urdf::Geometry& geometry, bool below_arm) const {
   const auto positive = [&](double length, const char* what) {
     if (!(std::isfinite(length) && length > 0.0))
@@ -134,7 +135,8 @@ void ShapeCollector::collect_fixed(const urdf::Link& link, const urdf::Link* exc
     if (child.get() != except && is_fixed(*child)) collect_fixed(*child, nullptr, base_from_link * parent_from(*child));
 }
 
-/// A shape inside another of its body adds nothing: a sphere that rounds the end of a cylinder, for one.
+/// Skips a shape that lies inside another shape of its body, such as a sphere at the end of a cylinder, and removes the
+/// shapes that lie inside the new one.
 void ShapeCollector::add(const LinkShape& shape) {
   for (const LinkShape& other : shapes_)
     if (same_part(other, shape) && contains(other.capsule_body, shape.capsule_body)) return;

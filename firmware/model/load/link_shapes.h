@@ -6,17 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "firmware/model/arm.h"
 #include "firmware/model/load/capsule_fit.h"
+#include "firmware/model/load/load_arm.h"
 
 namespace sidestep {
 
+/// A URDF pose, parent_from_child, with its quaternion normalised.
 Eigen::Isometry3d to_eigen(const urdf::Pose& pose);
 
-/// Walks from one link of the chain through everything that is fixed to it and collects the shapes.
+/// Collects the shapes of an arm, body by body: of a link of the chain and of all links attached to it.
 class ShapeCollector {
  public:
-  /// Adds to `shapes` and to `remarks`; the references must outlive the collector.
+  /// Appends to `shapes` and `remarks`. All arguments but chain_links must outlive the collector.
   ShapeCollector(const std::string& urdf_file, const std::vector<std::string>& chain_links, const MeshOptions& meshes,
                  std::vector<LinkShape>& shapes, std::vector<std::string>& remarks)
       : file_(urdf_file),
@@ -25,10 +26,12 @@ class ShapeCollector {
         shapes_(shapes),
         remarks_(remarks) {}
 
-  /// Throws std::runtime_error, one line naming the file and the link.
+  /// Collects the shapes of a link of the chain and of the side branches below it, with their joints at zero. Throws
+  /// std::runtime_error, one line that names the file and the link.
   void collect(const urdf::Link& link, int body, const Eigen::Isometry3d& body_from_link);
 
-  /// What the base link is fixed to, and what else is fixed to that; what moves there, as another arm, is not ours.
+  /// Collects, as shapes of body 0 and `below_arm`, the links that the base link is fixed to and the links fixed to
+  /// those. Links on movable joints there, such as another arm, are skipped. Throws as collect().
   void collect_below(const urdf::Link& base);
 
  private:

@@ -1,4 +1,4 @@
-#include "firmware/model/arm.h"
+#include "firmware/model/load/load_arm.h"
 
 #include <urdf_model/model.h>
 
@@ -14,7 +14,7 @@
 namespace sidestep {
 namespace {
 
-// Beyond what any joint does, and far from where products of them overflow.
+// Faster than any joint, and small enough that products of these do not overflow.
 constexpr double kFastest_radps = 1e9, kSharpest_radps2 = 1e9;
 
 using sidestep::to_eigen;
@@ -28,7 +28,7 @@ Eigen::Isometry3d to_eigen(const KDL::Frame& frame) {
   return result;
 }
 
-/// Names of the links from base to tip, both included.
+/// The names of the links from base to tip, both included.
 std::vector<std::string> path(const std::string& file, const urdf::ModelInterface& model, const std::string& base,
                               const std::string& tip) {
   for (const std::string& name : {base, tip})
@@ -77,12 +77,12 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
 
   Arm arm;
   KDL::Tree tree;
-  model->root_link_->inertial.reset();  // KDL has no place for it and would warn
+  model->root_link_->inertial.reset();  // KDL does not support it and would print a warning
   if (!kdl_parser::treeFromUrdfModel(*model, tree) || !tree.getChain(base, tip, arm.chain))
     fail("{}: no kinematic chain from '{}' to '{}'", urdf_file, base, tip);
 
   ShapeCollector shapes(urdf_file, links, meshes, arm.shapes, arm.remarks);
-  Eigen::Isometry3d body_from_link = Eigen::Isometry3d::Identity();  // of the link before the next segment
+  Eigen::Isometry3d body_from_link = Eigen::Isometry3d::Identity();  // of the link at the start of the next segment
   shapes.collect_below(*model->getLink(base));
   shapes.collect(*model->getLink(base), 0, body_from_link);
   for (unsigned i = 0; i < arm.chain.getNrOfSegments(); ++i) {
@@ -91,7 +91,7 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
     body_from_link = body_from_link * to_eigen(segment.pose(0.0));
     if (segment.getJoint().getType() != KDL::Joint::None) {
       if (arm.joints == kMaxJoints) fail("{}: more than {} joints from '{}' to '{}'", urdf_file, kMaxJoints, base, tip);
-      // Turn the frame so that its z is the joint's axis; the rest of the chain is then seen from the turned frame.
+      // Rotate the frame so that its z axis is the joint's axis; the rest of the chain is expressed in this frame.
       const urdf::Vector3& axis = link.parent_joint->axis;
       Eigen::Isometry3d link_from_body = Eigen::Isometry3d::Identity();
       link_from_body.linear() =

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "firmware/base/find_file.h"
+
 namespace sidestep {
 namespace {
 
@@ -19,27 +21,20 @@ namespace fs = std::filesystem;
 constexpr double kLargest_m = 100.0;
 constexpr std::uintmax_t kLargestFile_bytes = 256u << 20;
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
+/// The folder that contains a file, as an absolute path without `..`.
+std::string folder_of(const std::string& file) {
+  return fs::absolute(file).parent_path().lexically_normal().string();
 }
 
-/// A folder and all above it, the nearest first.
-std::vector<fs::path> upwards(fs::path folder) {
-  std::vector<fs::path> folders;
-  for (folder = fs::absolute(folder).lexically_normal();; folder = folder.parent_path()) {
-    folders.push_back(folder);
-    if (folder == folder.parent_path()) return folders;
-  }
-}
-
+/// The folders in which find_mesh() searches for a package, in its order.
 std::vector<fs::path> package_folders(const std::string& urdf_file, const std::vector<std::string>& package_path) {
   std::vector<fs::path> folders(package_path.begin(), package_path.end());
   const char* const variable = std::getenv("ROS_PACKAGE_PATH");
   std::istringstream entries(variable ? variable : "");
   for (std::string entry; std::getline(entries, entry, ':');)
     if (!entry.empty()) folders.emplace_back(entry);
-  for (const fs::path& folder : upwards(fs::absolute(urdf_file).parent_path())) folders.push_back(folder);
+  for (std::string above = folder_of(urdf_file); !above.empty(); above = folder_above(above))
+    folders.emplace_back(above);
   return folders;
 }
 
@@ -64,7 +59,7 @@ void check_file(const std::string& file) {
     throw std::runtime_error(fmt::format("{}: a mesh of more than {} MB", file, kLargestFile_bytes >> 20));
 }
 
-/// Adds a part of the scene; only its triangles have corners, as points and lines enclose nothing.
+/// Adds the triangles of a part of the scene and their corners. Points and lines enclose nothing and are skipped.
 void append(Mesh& mesh, const aiMesh& part, const Vector3& scale) {
   std::vector<int> index(part.mNumVertices, -1);
   for (unsigned f = 0; f < part.mNumFaces; ++f) {
@@ -94,15 +89,14 @@ std::string find_mesh(const std::string& name, const std::string& urdf_file,
   if (const std::string file = "file://"; starts_with(name, file)) return name.substr(file.size());
   const std::string package = "package://";
   if (!starts_with(name, package)) {
-    for (const fs::path& folder : upwards(fs::absolute(urdf_file).parent_path()))
-      if (is_file(folder / name)) return (folder / name).string();
+    if (const std::string found = find_upwards(folder_of(urdf_file), name); !found.empty()) return found;
     throw std::runtime_error(fmt::format("mesh '{}' is in no folder from that of the URDF upwards", name));
   }
   const fs::path whole = name.substr(package.size());
   const fs::path rest = whole.lexically_relative(*whole.begin());
   for (const fs::path& folder : package_folders(urdf_file, package_path)) {
-    if (is_file(folder / whole)) return (folder / whole).string();
-    if (folder.filename() == *whole.begin() && is_file(folder / rest)) return (folder / rest).string();
+    if (is_file((folder / whole).string())) return (folder / whole).string();
+    if (folder.filename() == *whole.begin() && is_file((folder / rest).string())) return (folder / rest).string();
   }
   throw std::runtime_error(
       fmt::format("mesh '{}' is neither on robot.package_path, nor on ROS_PACKAGE_PATH, nor above the URDF", name));
@@ -114,7 +108,7 @@ Mesh load_mesh(const std::string& file, const Vector3& scale) {
     throw std::runtime_error(fmt::format("{}: the scale of a mesh must be finite and not zero", file));
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  // Normals, colours and the like would keep equal vertices apart.
+  // Vertices that differ only in their normals, colours and the like are joined.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                                           aiComponent_COLORS | aiComponent_TEXCOORDS |
                                                           aiComponent_BONEWEIGHTS | aiComponent_MATERIALS);

@@ -10,11 +10,11 @@ namespace sidestep {
 namespace {
 
 constexpr int kSamples = 200;
-constexpr double kBuiltThatWay = 0.5;  // share of postures in which such a pair touches
+constexpr double kTouchingShare = 0.5;  // of the samples; a pair that touches in more overlaps by construction
 
 bool neighbours(const Arm& arm, int a, int b) {
   const LinkShape &one = arm.shapes[a], &other = arm.shapes[b];
-  if (one.body != other.body && (one.below_arm || other.below_arm)) return false;  // joined by the base link
+  if (one.body != other.body && (one.below_arm || other.below_arm)) return false;  // the base link lies between them
   const auto [low, high] = std::minmax(one.body, other.body);
   return std::none_of(arm.shapes.begin(), arm.shapes.end(),
                       [low = low, high = high](const LinkShape& s) { return s.body > low && s.body < high; });
@@ -29,7 +29,7 @@ JointVector sample(const Arm& arm, std::mt19937& random) {
   return q_rad;
 }
 
-/// Every joint in the middle of its range: a posture in which no arm is built to collide with itself.
+/// Every joint in the middle of its range, or at 0 without limits: a configuration in which no real arm touches itself.
 JointVector at_rest(const Arm& arm) {
   const JointVector middle_rad = 0.5 * (arm.limits.lower_rad + arm.limits.upper_rad);
   return middle_rad.array().isFinite().select(middle_rad, 0.0);
@@ -41,7 +41,7 @@ bool nearer(const Arm& arm, const LinkPoses& poses, const std::pair<int, int>& p
   return (points.a - points.b).norm() < a.radius_m + b.radius_m + distance_m;
 }
 
-/// The pairs of shapes that are no neighbours; `overlaps`: those that are near because they are built that way.
+/// The pairs of shapes that are no neighbours, divided as find_self_pairs() describes.
 struct Pairs {
   std::vector<std::pair<int, int>> free, overlaps;
 };
@@ -64,9 +64,9 @@ Pairs sort_pairs(const Arm& arm, double clearance_m) {
   const LinkPoses rest = forward_kinematics(arm, at_rest(arm));
   Pairs pairs;
   for (size_t p = 0; p < all.size(); ++p) {
-    const bool built_that_way =
-        touching[p] > kBuiltThatWay * kSamples || near[p] == kSamples || nearer(arm, rest, all[p], 0.0);
-    (built_that_way ? pairs.overlaps : pairs.free).push_back(all[p]);
+    const bool overlaps =
+        touching[p] > kTouchingShare * kSamples || near[p] == kSamples || nearer(arm, rest, all[p], 0.0);
+    (overlaps ? pairs.overlaps : pairs.free).push_back(all[p]);
   }
   return pairs;
 }

@@ -11,21 +11,21 @@
 namespace sidestep {
 namespace {
 
-// The parsers go into what stands within what by recursion, which has to end before the stack does.
+// The parsers descend into nested tags by recursion; this bounds its depth, so that the stack does not overflow.
 constexpr int kMostTags = 20000;
 
-/// Keeps the first complaint of the URDF parser, which would print several and drop the elements it complains about.
-class Complaints : public console_bridge::OutputHandler {
+/// Collects the first error line of the URDF parser, which would print its errors and skip the elements concerned.
+class FirstError : public console_bridge::OutputHandler {
  public:
-  Complaints() { console_bridge::useOutputHandler(this); }
-  ~Complaints() override { console_bridge::restorePreviousOutputHandler(); }
-  Complaints(const Complaints&) = delete;
-  Complaints& operator=(const Complaints&) = delete;
+  FirstError() { console_bridge::useOutputHandler(this); }
+  ~FirstError() override { console_bridge::restorePreviousOutputHandler(); }
+  FirstError(const FirstError&) = delete;
+  FirstError& operator=(const FirstError&) = delete;
 
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text.substr(0, text.find('\n'));
   }
-  const std::string& first() const { return first_; }
+  const std::string& text() const { return first_; }
 
  private:
   std::string first_;
@@ -36,9 +36,9 @@ class Complaints : public console_bridge::OutputHandler {
 urdf::ModelInterfaceSharedPtr read_urdf(const std::string& file) {
   const std::string text = read_text_file(file);
   if (std::count(text.begin(), text.end(), '<') > kMostTags) fail("{}: more than {} tags", file, kMostTags);
-  const Complaints complaints;
+  const FirstError error;
   urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!complaints.first().empty()) fail("{}: not a valid URDF: {}", file, complaints.first());
+  if (!error.text().empty()) fail("{}: not a valid URDF: {}", file, error.text());
   if (!model || !model->getRoot()) fail("{}: not a valid URDF", file);
   return model;
 }

@@ -7,11 +7,11 @@
 
 namespace sidestep {
 
-/// Reads a URDF. Throws std::runtime_error, one line naming the file, also where urdfdom would complain and go on
-/// without the element that it complains about.
+/// Reads a URDF of at most 20000 tags. Throws std::runtime_error, one line that names the file, also for an error that
+/// urdfdom would only report and then skip the element.
 urdf::ModelInterfaceSharedPtr read_urdf(const std::string& file);
 
-/// Whether a fixed joint holds the link.
+/// Whether the joint to the link's parent is fixed; false for the root.
 bool is_fixed(const urdf::Link& link);
 
 }  // namespace sidestep

@@ -13,7 +13,7 @@ using namespace sidestep;
 
 namespace {
 
-void an_empty_histogram_says_0(void**) {
+void the_quantiles_of_an_empty_histogram_are_0(void**) {
   const Histogram histogram;
   assert_int_equal(histogram.count(), 0);
   check_near(histogram.quantile_s(0.5), 0.0, 0.0);
@@ -44,7 +44,7 @@ void quantiles_are_never_too_low_and_at_most_a_bin_too_high(void**) {
   assert_int_equal(histogram.count(), 20000);
 }
 
-void what_is_outside_the_bins_or_no_number_is_counted_all_the_same(void**) {
+void durations_outside_the_bins_and_nan_are_counted(void**) {
   Histogram histogram;
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double odd_s : {0.0, -1.0, 1e-12, std::nan(""), -infinity, 100.0, infinity}) histogram.add(odd_s);
@@ -64,10 +64,10 @@ void adding_allocates_nothing(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(an_empty_histogram_says_0),
+      cmocka_unit_test(the_quantiles_of_an_empty_histogram_are_0),
       cmocka_unit_test(one_duration_is_every_quantile),
       cmocka_unit_test(quantiles_are_never_too_low_and_at_most_a_bin_too_high),
-      cmocka_unit_test(what_is_outside_the_bins_or_no_number_is_counted_all_the_same),
+      cmocka_unit_test(durations_outside_the_bins_and_nan_are_counted),
       cmocka_unit_test(adding_allocates_nothing),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

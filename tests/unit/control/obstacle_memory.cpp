@@ -68,7 +68,7 @@ void motion_within_the_speed_bound_is_no_jump(void**) {
 void a_capsule_jumps_when_an_end_of_its_axis_does(void**) {
   const Vector3 a(-0.5, 0, 0), b(0.5, 0, 0), c(0, 0.5, 0), d(0, -0.5, 0);
   const auto capsule = [](const Vector3& start, const Vector3& end) {
-    return Obstacle{1, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
+    return Obstacle{1, Shape::kCapsule, {start, end, 0.05}, Vector3::Zero(), Vector3::Zero()};
   };
   Scene scene;
   scene.send({capsule(a, b)});

@@ -10,7 +10,7 @@ using test::Random;
 
 namespace {
 
-/// Least distance of two segments by a search that knows no special cases: the distance is convex in both parameters.
+/// Least distance of two segments by a nested search, without special cases: the distance is convex in both parameters.
 double searched_distance(const Capsule& a, const Capsule& b) {
   const auto along_b = [&](double s) {
     const Vector3 p = a.start + s * (a.end - a.start);
@@ -41,7 +41,7 @@ double off_segment(const Capsule& capsule, const Vector3& p) {
   return std::max(beyond, (p - capsule.start - along / length * axis).norm());
 }
 
-/// Random pairs, a third of them hard: points, parallel and nearly parallel axes, axes that meet.
+/// Random pairs, two thirds of them special cases: points, parallel and nearly parallel axes, axes that meet.
 std::pair<Capsule, Capsule> random_pair(Random& random) {
   Capsule a{random.inside(-1, 1), random.inside(-1, 1), 0.1}, b{random.inside(-1, 1), random.inside(-1, 1), 0.1};
   const double tilt = std::pow(10.0, random.uniform(-12, -2));
@@ -76,7 +76,7 @@ std::pair<Capsule, Capsule> random_pair(Random& random) {
   return {a, b};
 }
 
-/// Where axes are nearly parallel their crossing is ill-defined, and a micrometre must do.
+/// The crossing of nearly parallel axes is ill-conditioned, hence the wider tolerance.
 double tolerance_m(const Capsule& a, const Capsule& b) {
   const Vector3 u = (a.end - a.start).normalized(), v = (b.end - b.start).normalized();
   const double sine = u.cross(v).norm();
@@ -117,7 +117,7 @@ void nearest_points_do_not_depend_on_the_order_of_the_ends(void**) {
   }
 }
 
-void hand_worked_segments(void**) {
+void nearest_points_of_segments_worked_out_by_hand(void**) {
   const Capsule x{Vector3(0, 0, 0), Vector3(2, 0, 0), 0.1};
   // Crossing 1 m above each other.
   const NearestPoints crossing = nearest_on_axes(x, {Vector3(0.5, -1, 1), Vector3(0.5, 1, 1), 0.1});
@@ -137,7 +137,7 @@ void hand_worked_segments(void**) {
   check_near(meeting.b, Vector3(1, 0, 0), 1e-15);
 }
 
-void capsule_around_a_box_holds_all_corners_and_touches_them(void**) {
+void the_capsule_around_a_box_contains_all_corners_and_touches_them(void**) {
   Random random(4);
   for (int trial = 0; trial < 1000; ++trial) {
     Vector3 edges(random.uniform(0.01, 2), random.uniform(0.01, 2), random.uniform(0.01, 2));
@@ -173,7 +173,7 @@ void a_capsule_contains_another_when_all_sampled_surface_points_are_inside(void*
     check(contains(outer, inner) == (farthest < outer.radius_m), "trial %d", trial);
     contained += contains(outer, inner);
   }
-  check(contained > 50 && contained < 1950, "%d of 2000 contained: the trials prove nothing", contained);
+  check(contained > 50 && contained < 1950, "%d of 2000 contained: too one-sided", contained);
 }
 
 void a_sphere_at_the_end_of_a_cylinder_is_contained(void**) {
@@ -191,8 +191,8 @@ int main() {
       cmocka_unit_test(nearest_point_of_a_segment_beats_every_sampled_point),
       cmocka_unit_test(nearest_points_of_two_axes_agree_with_a_search),
       cmocka_unit_test(nearest_points_do_not_depend_on_the_order_of_the_ends),
-      cmocka_unit_test(hand_worked_segments),
-      cmocka_unit_test(capsule_around_a_box_holds_all_corners_and_touches_them),
+      cmocka_unit_test(nearest_points_of_segments_worked_out_by_hand),
+      cmocka_unit_test(the_capsule_around_a_box_contains_all_corners_and_touches_them),
       cmocka_unit_test(a_capsule_contains_another_when_all_sampled_surface_points_are_inside),
       cmocka_unit_test(a_sphere_at_the_end_of_a_cylinder_is_contained),
   };

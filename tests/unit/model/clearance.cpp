@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A sphere, a capsule or a box, at rest.
+/// A sphere, a capsule or a box at rest.
 Obstacle random_shape(Random& random, double reach_m) {
   const Vector3 centre = random.inside(-reach_m, reach_m);
   const Matrix3 rotation = random.turn().toRotationMatrix();
@@ -49,7 +49,7 @@ std::unique_ptr<ObstacleSet> random_set(Random& random, int count, double reach_
   return set;
 }
 
-/// Every shape against every obstacle, nothing left out.
+/// Every link shape with every obstacle, none skipped.
 std::vector<NearPair> all_pairs(const LinkPoses& poses, const ObstacleView& view, double horizon_s) {
   std::vector<NearPair> pairs;
   for (int o = 0; o < view.set->count; ++o) {
@@ -71,7 +71,7 @@ bool moves(const NearPair& pair) {
   return lwa3().shapes[static_cast<size_t>(pair.now.shape)].body > 0;
 }
 
-double pressing_m(const NearPair& pair) {
+double least_distance_m(const NearPair& pair) {
   return std::min(pair.now.distance_m, pair.approach.distance_m);
 }
 
@@ -96,7 +96,7 @@ void normal_points_from_the_obstacle_to_the_arm(void**) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Capsule link = random_shape(random, 0.5).capsule;
     const Obstacle obstacle = random_shape(random, 0.5);
-    const double radius_m = obstacle.is_box() ? 0.0 : obstacle.capsule.radius_m;
+    const double radius_m = obstacle.shape == Shape::kBox ? 0.0 : obstacle.capsule.radius_m;
     const Proximity pair = measure_pair(link, obstacle);
     check_near_because(pair.on_obstacle + pair.axis_distance_m * pair.normal, pair.on_arm, 1e-9, "trial %d", trial);
     check_near_because(pair.distance_m, pair.axis_distance_m - link.radius_m - radius_m, 1e-15, "trial %d", trial);
@@ -112,7 +112,7 @@ void normal_is_a_unit_vector_across_the_link_where_the_axes_meet(void**) {
   check_near(measure_pair(point, point).normal.norm(), 1.0, 1e-12);
 }
 
-/// But for rounding; infinity is infinity.
+/// Equal up to rounding; both may be infinite.
 void check_same(double actual, double expected, int trial) {
   if (actual != expected) check_near_because(actual, expected, 1e-12, "trial %d", trial);
 }
@@ -135,7 +135,7 @@ void nearest_is_the_true_minimum_among_many(void**) {
   }
 }
 
-void near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many(void**) {
+void the_near_list_holds_the_pairs_within_reach_and_the_nearest_of_too_many(void**) {
   Random random(4);
   int overfull = 0, partly = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -146,8 +146,8 @@ void near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many(void
     const Clearance clearance = measure_clearance(lwa3(), poses, view, reach);
     std::vector<double> expected, actual;
     for (const NearPair& pair : all_pairs(poses, view, reach.horizon_s))
-      if (moves(pair) && pressing_m(pair) < reach.range_m) expected.push_back(pressing_m(pair));
-    for (const NearPair& pair : clearance.near) actual.push_back(pressing_m(pair));
+      if (moves(pair) && least_distance_m(pair) < reach.range_m) expected.push_back(least_distance_m(pair));
+    for (const NearPair& pair : clearance.near) actual.push_back(least_distance_m(pair));
     std::sort(expected.begin(), expected.end());
     std::sort(actual.begin(), actual.end());
     (expected.size() > kMaxNear ? overfull : partly) += !expected.empty();
@@ -159,8 +159,8 @@ void near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many(void
   check(overfull > 5 && partly > 5, "%d overfull, %d partly filled", overfull, partly);
 }
 
-/// For spheres there is a shorter way to the same, most of all for those that recede.
-void near_pairs_are_what_any_pair_of_shapes_would_be(void**) {
+/// Spheres take a faster computation than other shapes, above all receding ones.
+void a_near_pair_has_the_values_of_the_general_computation(void**) {
   Random random(7);
   int receding = 0, coming = 0;
   for (int trial = 0; trial < 600; ++trial) {
@@ -185,7 +185,7 @@ void near_pairs_are_what_any_pair_of_shapes_would_be(void**) {
       check_near_because(pair.approach.time_s, other.approach.time_s, 1e-6, "trial %d", trial);
       const bool is_sphere = set->obstacles[static_cast<size_t>(pair.now.obstacle)].capsule.is_sphere();
       (pair.approach.time_s > 0.0 ? coming : receding) += is_sphere;
-      if (pair.approach.time_s == 0.0) continue;  // its normal is not asked for
+      if (pair.approach.time_s == 0.0) continue;  // its normal is not used
       assert_int_equal(pair.approach.head_on, other.approach.head_on);
       check((pair.approach.normal - other.approach.normal).norm() < rounding, "trial %d", trial);
     }
@@ -193,7 +193,7 @@ void near_pairs_are_what_any_pair_of_shapes_would_be(void**) {
   check(receding > 200 && coming > 200, "%d spheres recede, %d come", receding, coming);
 }
 
-void age_moves_the_obstacles_and_growth_swells_them(void**) {
+void obstacles_are_extrapolated_by_their_age_and_grown(void**) {
   auto set = std::make_unique<ObstacleSet>();
   set->count = 1;
   set->obstacles[0].id = 7;
@@ -210,7 +210,7 @@ void age_moves_the_obstacles_and_growth_swells_them(void**) {
   check_near(clearance_m(0.2, 0.3), 2.0 - top_m - 0.1 - 0.1 - 0.3, 1e-12);
 }
 
-void the_base_column_counts_for_the_surface_but_not_for_the_axis(void**) {
+void the_base_column_counts_for_the_surface_distance_but_not_for_the_axis_distance(void**) {
   auto set = std::make_unique<ObstacleSet>();
   set->count = 1;
   set->obstacles[0].capsule = {Vector3(0.2, 0, 0.1), Vector3(0.2, 0, 0.1), 0.05};
@@ -222,7 +222,7 @@ void the_base_column_counts_for_the_surface_but_not_for_the_axis(void**) {
   check_near(clearance.nearest_axis.axis_distance_m, std::hypot(0.2, 0.2), 1e-12);
 }
 
-void nothing_is_near_without_obstacles(void**) {
+void without_obstacles_there_is_no_nearest_pair(void**) {
   const auto empty = std::make_unique<ObstacleSet>();
   for (const ObstacleView& view : {ObstacleView{}, ObstacleView{empty.get(), 0.1, 0.1}}) {
     const Clearance clearance = measure_clearance(lwa3(), forward_kinematics(lwa3(), home_rad()), view, {0.4, 1.0});
@@ -233,16 +233,18 @@ void nothing_is_near_without_obstacles(void**) {
   }
 }
 
-/// Of what is looked at: the point that is nearest now of a sphere or a capsule, all of a box.
-double distance_on_the_way_m(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double time_s) {
-  const Vector3 way = time_s * velocity_at(obstacle, now.on_obstacle);
-  Obstacle then = obstacle.is_box() ? obstacle : sphere_obstacle(now.on_obstacle, obstacle.capsule.radius_m);
-  then.capsule.start += way;
-  then.capsule.end += way;
+/// The distance after time_s to what predict_closest_approach() follows: of a sphere or a capsule the point that is
+/// nearest now, of a box the whole.
+double distance_after_m(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double time_s) {
+  const Vector3 shift = time_s * velocity_at(obstacle, now.on_obstacle);
+  Obstacle then =
+      obstacle.shape == Shape::kBox ? obstacle : sphere_obstacle(now.on_obstacle, obstacle.capsule.radius_m);
+  then.capsule.start += shift;
+  then.capsule.end += shift;
   return measure_pair(link, then).distance_m;
 }
 
-void closest_approach_is_the_least_distance_along_the_way(void**) {
+void closest_approach_is_the_least_distance_within_the_horizon(void**) {
   Random random(5);
   int boxes = 0;
   for (int trial = 0; trial < 1000; ++trial) {
@@ -252,19 +254,19 @@ void closest_approach_is_the_least_distance_along_the_way(void**) {
     const Proximity now = measure_pair(link, obstacle);
     const ClosestApproach approach = predict_closest_approach(link, obstacle, now, horizon_s);
     check(approach.time_s >= 0 && approach.time_s <= horizon_s + 1e-12, "trial %d: time %g", trial, approach.time_s);
-    check_near_because(distance_on_the_way_m(link, obstacle, now, approach.time_s), approach.distance_m, 1e-9,
-                       "trial %d", trial);
-    const double slack_m = obstacle.is_box() ? 0.02 : 1e-9;
+    check_near_because(distance_after_m(link, obstacle, now, approach.time_s), approach.distance_m, 1e-9, "trial %d",
+                       trial);
+    const double slack_m = obstacle.shape == Shape::kBox ? 0.02 : 1e-9;
     for (int i = 0; i <= 50; ++i)
-      check(distance_on_the_way_m(link, obstacle, now, i * horizon_s / 50) >= approach.distance_m - slack_m,
+      check(distance_after_m(link, obstacle, now, i * horizon_s / 50) >= approach.distance_m - slack_m,
             "trial %d, sample %d", trial, i);
     check_near_because(approach.normal.norm(), 1.0, 1e-9, "trial %d", trial);
-    boxes += obstacle.is_box() && approach.time_s > 0.0;
+    boxes += obstacle.shape == Shape::kBox && approach.time_s > 0.0;
   }
-  check(boxes > 100, "%d boxes on their way", boxes);
+  check(boxes > 100, "only %d boxes come closer", boxes);
 }
 
-void what_stands_there_always_counts_and_neither_ages_nor_grows(void**) {
+void static_obstacles_always_count_and_neither_move_nor_grow(void**) {
   const std::vector<Obstacle> surroundings{box_obstacle(Vector3(0, 0, 2), Matrix3::Identity(), Vector3(1, 1, 0.2))};
   const auto set = std::make_unique<ObstacleSet>();
   const LinkPoses poses = forward_kinematics(lwa3(), JointVector::Zero(7));
@@ -277,7 +279,7 @@ void what_stands_there_always_counts_and_neither_ages_nor_grows(void**) {
   }
 }
 
-void velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point(void**) {
+void the_velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point(void**) {
   auto set = std::make_unique<ObstacleSet>();
   set->count = 1;
   set->obstacles[0] = box_obstacle(Vector3(0.3, 0, 1.5), Matrix3::Identity(), Vector3(1, 0.2, 0.1));
@@ -299,14 +301,14 @@ int main() {
       cmocka_unit_test(normal_points_from_the_obstacle_to_the_arm),
       cmocka_unit_test(normal_is_a_unit_vector_across_the_link_where_the_axes_meet),
       cmocka_unit_test(nearest_is_the_true_minimum_among_many),
-      cmocka_unit_test(near_list_holds_what_is_within_reach_and_the_most_pressing_of_too_many),
-      cmocka_unit_test(near_pairs_are_what_any_pair_of_shapes_would_be),
-      cmocka_unit_test(age_moves_the_obstacles_and_growth_swells_them),
-      cmocka_unit_test(the_base_column_counts_for_the_surface_but_not_for_the_axis),
-      cmocka_unit_test(nothing_is_near_without_obstacles),
-      cmocka_unit_test(closest_approach_is_the_least_distance_along_the_way),
-      cmocka_unit_test(what_stands_there_always_counts_and_neither_ages_nor_grows),
-      cmocka_unit_test(velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point),
+      cmocka_unit_test(the_near_list_holds_the_pairs_within_reach_and_the_nearest_of_too_many),
+      cmocka_unit_test(a_near_pair_has_the_values_of_the_general_computation),
+      cmocka_unit_test(obstacles_are_extrapolated_by_their_age_and_grown),
+      cmocka_unit_test(the_base_column_counts_for_the_surface_distance_but_not_for_the_axis_distance),
+      cmocka_unit_test(without_obstacles_there_is_no_nearest_pair),
+      cmocka_unit_test(closest_approach_is_the_least_distance_within_the_horizon),
+      cmocka_unit_test(static_obstacles_always_count_and_neither_move_nor_grow),
+      cmocka_unit_test(the_velocity_of_a_pair_is_that_of_the_material_at_the_nearest_point),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

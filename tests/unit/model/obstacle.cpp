@@ -8,7 +8,7 @@ using test::Random;
 
 namespace {
 
-void a_moving_sphere_goes_straight(void**) {
+void a_moving_sphere_moves_straight(void**) {
   Obstacle sphere;
   sphere.capsule = {Vector3(1, 2, 3), Vector3(1, 2, 3), 0.1};
   sphere.velocity_mps = Vector3(0.5, -1, 2);
@@ -19,8 +19,9 @@ void a_moving_sphere_goes_straight(void**) {
   check_near(later.radius_m, 0.1, 0);
 }
 
-void a_quarter_turn_carries_the_ends_around_the_middle(void**) {
+void a_quarter_turn_rotates_the_ends_about_the_centre(void**) {
   Obstacle bar;
+  bar.shape = Shape::kCapsule;
   bar.capsule = {Vector3(1, 0, 0), Vector3(3, 0, 0), 0.1};
   bar.velocity_mps = Vector3(0, 0, 1);
   bar.angular_velocity_radps = Vector3(0, 0, M_PI);
@@ -29,11 +30,12 @@ void a_quarter_turn_carries_the_ends_around_the_middle(void**) {
   check_near(later.end, Vector3(2, 1, 0.5), 1e-15);
 }
 
-/// The end points obey p' = v + w x (p - centre); small steps of it must lead to the same place.
-void motion_agrees_with_small_steps(void**) {
+/// The ends obey p' = v + w x (p - centre), integrated here in small steps.
+void extrapolation_agrees_with_numerical_integration(void**) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
     Obstacle bar;
+    bar.shape = Shape::kCapsule;
     bar.capsule = {random.inside(-1, 1), random.inside(-1, 1), 0.1};
     bar.velocity_mps = random.inside(-1, 1);
     bar.angular_velocity_radps = random.inside(-2, 2);
@@ -52,9 +54,10 @@ void motion_agrees_with_small_steps(void**) {
   }
 }
 
-void no_time_changes_nothing(void**) {
+void extrapolation_by_no_time_changes_nothing(void**) {
   Random random(2);
   Obstacle bar;
+  bar.shape = Shape::kCapsule;
   bar.capsule = {random.inside(-1, 1), random.inside(-1, 1), 0.1};
   bar.velocity_mps = random.inside(-1, 1);
   bar.angular_velocity_radps = random.inside(-2, 2);
@@ -62,7 +65,7 @@ void no_time_changes_nothing(void**) {
   check_near(extrapolated(bar, 0.0).capsule.end, bar.capsule.end, 0);
 }
 
-void a_box_keeps_its_edges_however_they_are_ordered_and_turns_as_one(void**) {
+void a_box_keeps_its_edges_in_any_order_and_rotates_rigidly(void**) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
     const Quaternion turn = random.turn();
@@ -72,7 +75,7 @@ void a_box_keeps_its_edges_however_they_are_ordered_and_turns_as_one(void**) {
     const double dt_s = random.uniform(0, 1), angle = obstacle.angular_velocity_radps.norm() * dt_s;
     const Eigen::AngleAxisd by(angle, obstacle.angular_velocity_radps.normalized());
     const Box later = box_of(extrapolated(obstacle, dt_s));
-    // The same corners: each of the eight is one of the box's.
+    // Each of the eight expected corners is a corner of the extrapolated box.
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3 sign(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
       const Vector3 p = later.axes.transpose() * (by * (turn * sign.cwiseProduct(edges)));
@@ -83,14 +86,19 @@ void a_box_keeps_its_edges_however_they_are_ordered_and_turns_as_one(void**) {
   }
 }
 
-void a_box_without_width_is_a_line(void**) {
+void a_box_without_width_is_stored_as_a_capsule_and_one_without_height_as_a_box(void**) {
   const Obstacle line = box_obstacle(Vector3::Zero(), Matrix3::Identity(), Vector3(0, 0, 0.4));
-  assert_false(line.is_box());
+  assert_true(line.shape == Shape::kCapsule);
   check_near((line.capsule.end - line.capsule.start).norm(), 0.4, 1e-12);
-  assert_true(box_obstacle(Vector3::Zero(), Matrix3::Identity(), Vector3(0.3, 0, 0.4)).is_box());
+  const auto shape_of = [](const Vector3& edges_m) {
+    return box_obstacle(Vector3::Zero(), Matrix3::Identity(), edges_m).shape;
+  };
+  assert_true(shape_of(Vector3(0.3, 0, 0.4)) == Shape::kBox);
+  assert_true(shape_of(Vector3(1.9e-6, 0, 0.4)) == Shape::kCapsule);
+  assert_true(shape_of(Vector3(2.1e-6, 0, 0.4)) == Shape::kBox);
 }
 
-void velocity_at_a_point_is_how_that_point_moves(void**) {
+void velocity_at_a_point_is_the_derivative_of_that_point(void**) {
   Random random(4);
   for (int trial = 0; trial < 100; ++trial) {
     Obstacle bar = capsule_obstacle(random.inside(-1, 1), random.turn().toRotationMatrix(), 0.1, 0.8);
@@ -107,13 +115,13 @@ void velocity_at_a_point_is_how_that_point_moves(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_moving_sphere_goes_straight),
-      cmocka_unit_test(a_quarter_turn_carries_the_ends_around_the_middle),
-      cmocka_unit_test(motion_agrees_with_small_steps),
-      cmocka_unit_test(no_time_changes_nothing),
-      cmocka_unit_test(a_box_keeps_its_edges_however_they_are_ordered_and_turns_as_one),
-      cmocka_unit_test(a_box_without_width_is_a_line),
-      cmocka_unit_test(velocity_at_a_point_is_how_that_point_moves),
+      cmocka_unit_test(a_moving_sphere_moves_straight),
+      cmocka_unit_test(a_quarter_turn_rotates_the_ends_about_the_centre),
+      cmocka_unit_test(extrapolation_agrees_with_numerical_integration),
+      cmocka_unit_test(extrapolation_by_no_time_changes_nothing),
+      cmocka_unit_test(a_box_keeps_its_edges_in_any_order_and_rotates_rigidly),
+      cmocka_unit_test(a_box_without_width_is_stored_as_a_capsule_and_one_without_height_as_a_box),
+      cmocka_unit_test(velocity_at_a_point_is_the_derivative_of_that_point),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

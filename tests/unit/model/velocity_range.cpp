@@ -17,7 +17,7 @@ JointLimits limits_of(double lower, double upper, double velocity, double accele
           JointVector::Constant(joints, velocity), JointVector::Constant(joints, acceleration)};
 }
 
-/// Limits as different from joint to joint as they may be.
+/// Limits that differ widely from joint to joint.
 JointLimits random_limits(Random& random, int joints) {
   JointLimits limits = limits_of(0, 0, 0, 0, joints);
   for (int i = 0; i < joints; ++i) {
@@ -30,15 +30,15 @@ JointLimits random_limits(Random& random, int joints) {
   return limits;
 }
 
-/// Wishes that a sane law never has: far too fast, reversing at once, resting for a while.
-JointVector extreme_wish(Random& random, int joints) {
-  JointVector wish = random.joints(joints, -1, 1) * std::pow(10.0, random.uniform(-2, 3));
-  if (random.chance(0.2)) wish.setZero();
-  if (random.chance(0.2)) wish.setConstant(random.chance(0.5) ? 1e6 : -1e6);
-  return wish;
+/// Nominal velocities that no sane law computes: far too fast, reversing at once, resting for a while.
+JointVector extreme_nominal(Random& random, int joints) {
+  JointVector nominal_radps = random.joints(joints, -1, 1) * std::pow(10.0, random.uniform(-2, 3));
+  if (random.chance(0.2)) nominal_radps.setZero();
+  if (random.chance(0.2)) nominal_radps.setConstant(random.chance(0.5) ? 1e6 : -1e6);
+  return nominal_radps;
 }
 
-void stopping_velocity_is_what_braking_can_undo(void**) {
+void braking_from_the_stopping_velocity_stops_within_the_gap(void**) {
   // v T + v^2 / 2a = gap with a = 10, T = 0.01, v = 1: 0.01 + 0.05.
   check_near(stopping_velocity(0.06, 10.0, 0.01), 1.0, 1e-12);
   check_near(stopping_velocity(-0.06, 10.0, 0.01), -1.0, 1e-12);
@@ -56,7 +56,7 @@ void stopping_velocity_is_what_braking_can_undo(void**) {
   }
 }
 
-void a_random_walk_of_extreme_wishes_never_leaves_the_limits(void**) {
+void a_random_walk_of_extreme_nominal_velocities_never_leaves_the_limits(void**) {
   Random random(2);
   for (int walk = 0; walk < 40; ++walk) {
     const int joints = 6 + random.index(5);
@@ -64,12 +64,12 @@ void a_random_walk_of_extreme_wishes_never_leaves_the_limits(void**) {
     JointVector q_rad(joints), qd_radps = JointVector::Zero(joints);
     for (int i = 0; i < joints; ++i)
       q_rad[i] = random.uniform(std::max(-3.0, limits.lower_rad[i]), std::min(3.0, limits.upper_rad[i]));
-    JointVector wish = extreme_wish(random, joints);
+    JointVector nominal_radps = extreme_nominal(random, joints);
     for (int cycle = 0; cycle < 3000; ++cycle) {
-      if (random.chance(0.1)) wish = extreme_wish(random, joints);
+      if (random.chance(0.1)) nominal_radps = extreme_nominal(random, joints);
       const VelocityRange range = velocity_range(limits, q_rad, q_rad, qd_radps, kPeriod_s);
       check((range.lower_radps.array() <= range.upper_radps.array()).all(), "walk %d, cycle %d: empty", walk, cycle);
-      JointVector next = wish;
+      JointVector next = nominal_radps;
       apply_limits(limits, range, qd_radps, kPeriod_s, next);
       q_rad += kPeriod_s * next;
       for (int i = 0; i < joints; ++i) {
@@ -85,8 +85,8 @@ void a_random_walk_of_extreme_wishes_never_leaves_the_limits(void**) {
   }
 }
 
-/// A gate that never lets anything through would pass the walk above.
-void a_joint_gets_where_it_wants_nearly_as_fast_as_it_may(void**) {
+/// Limits that stop every motion would pass the walk above.
+void a_joint_reaches_its_goal_nearly_as_fast_as_the_limits_allow(void**) {
   const JointLimits limits = limits_of(-1, 1, 2, 10);
   JointVector q_rad = JointVector::Zero(7), qd_radps = JointVector::Zero(7);
   int cycles = 0;
@@ -108,28 +108,28 @@ void a_joint_gets_where_it_wants_nearly_as_fast_as_it_may(void**) {
   check(qd_radps.maxCoeff() < 1e-2, "%g rad/s at the limit", qd_radps.maxCoeff());
 }
 
-void a_wish_too_fast_is_scaled_and_keeps_its_direction(void**) {
+void a_nominal_velocity_beyond_the_limits_is_scaled_and_keeps_its_direction(void**) {
   Random random(3);
   for (int trial = 0; trial < 500; ++trial) {
     JointLimits limits = limits_of(-kInfinity, kInfinity, 2, 1e9);
     limits.velocity_radps = random.joints(7, 0.5, 3);
-    const JointVector wish = random.joints(7, -1, 1) * std::pow(10.0, random.uniform(-1, 2));
+    const JointVector nominal_radps = random.joints(7, -1, 1) * std::pow(10.0, random.uniform(-1, 2));
     const JointVector rest = JointVector::Zero(7);
-    JointVector given = wish;
+    JointVector given = nominal_radps;
     const int limiting =
         apply_limits(limits, velocity_range(limits, rest, rest, rest, kPeriod_s), rest, kPeriod_s, given);
-    const double excess = wish.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff();
-    check_near_because(given, JointVector(wish / std::max(1.0, excess)), 1e-12, "trial %d", trial);
+    const double excess = nominal_radps.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff();
+    check_near_because(given, JointVector(nominal_radps / std::max(1.0, excess)), 1e-12, "trial %d", trial);
     check(limiting == (excess > 1.0 ? kLimitingVelocity : kLimitingNothing), "trial %d: %d", trial, limiting);
   }
 }
 
-void what_acted_is_told(void**) {
+void the_limits_that_acted_are_reported(void**) {
   const JointLimits limits = limits_of(-1, 1, 2, 10);
   const JointVector middle = JointVector::Zero(7), edge = JointVector::Constant(7, 0.9999);
-  const auto acted = [&](const JointVector& q_rad, double last, double wish) {
+  const auto acted = [&](const JointVector& q_rad, double last, double nominal) {
     const JointVector before = JointVector::Constant(7, last);
-    JointVector velocity = JointVector::Constant(7, wish);
+    JointVector velocity = JointVector::Constant(7, nominal);
     return apply_limits(limits, velocity_range(limits, q_rad, q_rad, before, kPeriod_s), before, kPeriod_s, velocity);
   };
   assert_int_equal(acted(middle, 1.0, 1.05), kLimitingNothing);
@@ -144,10 +144,10 @@ void a_joint_outside_its_position_limits_returns(void**) {
   for (int trial = 0; trial < 50; ++trial) {
     const JointLimits limits = limits_of(-1, 1, random.uniform(0.5, 3), random.uniform(1, 50));
     JointVector q_rad = random.joints(7, -2, 2), qd_radps = JointVector::Zero(7);
-    JointVector wish = random.joints(7, -5, 5);
+    JointVector nominal_radps = random.joints(7, -5, 5);
     for (int cycle = 0; cycle < 1000; ++cycle) {
       const JointVector before = q_rad;
-      JointVector next = wish;
+      JointVector next = nominal_radps;
       apply_limits(limits, velocity_range(limits, q_rad, q_rad, qd_radps, kPeriod_s), qd_radps, kPeriod_s, next);
       check(((next - qd_radps).cwiseAbs().array() <= limits.acceleration_radps2.array() * kPeriod_s + 1e-9).all(),
             "trial %d, cycle %d", trial, cycle);
@@ -155,13 +155,13 @@ void a_joint_outside_its_position_limits_returns(void**) {
       qd_radps = next;
       for (int i = 0; i < 7; ++i)
         check(std::abs(q_rad[i]) <= std::max(1.0, std::abs(before[i])) + 1e-9,
-              "trial %d, cycle %d, joint %d goes farther out", trial, cycle, i);
+              "trial %d, cycle %d, joint %d moves farther out", trial, cycle, i);
     }
     check(q_rad.cwiseAbs().maxCoeff() <= 1.0 + 1e-3, "trial %d: still at %g", trial, q_rad.cwiseAbs().maxCoeff());
   }
 }
 
-void a_joint_too_fast_to_stop_gets_the_hardest_braking(void**) {
+void a_joint_too_fast_to_stop_brakes_at_its_acceleration_limit(void**) {
   const JointLimits limits = limits_of(-1, 1, 2, 10);
   const JointVector q_rad = JointVector::Constant(7, 0.99), qd_radps = JointVector::Constant(7, 1.9);
   const VelocityRange range = velocity_range(limits, q_rad, q_rad, qd_radps, kPeriod_s);
@@ -169,8 +169,8 @@ void a_joint_too_fast_to_stop_gets_the_hardest_braking(void**) {
   check_near(range.upper_radps, JointVector::Constant(7, 1.8), 1e-12);
 }
 
-/// A joint somewhere between what was commanded and what was measured is stopped for both.
-void the_worse_of_two_positions_counts(void**) {
+/// A joint between its commanded and its measured position can stop before its limits from either.
+void the_position_nearer_to_each_limit_counts(void**) {
   const JointLimits limits = limits_of(-1, 1, 2, 100);
   const JointVector rest = JointVector::Zero(7), low = JointVector::Constant(7, -0.95),
                     high = JointVector::Constant(7, 0.97);
@@ -204,14 +204,14 @@ void brake_reaches_exactly_zero_and_stays(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(stopping_velocity_is_what_braking_can_undo),
-      cmocka_unit_test(a_random_walk_of_extreme_wishes_never_leaves_the_limits),
-      cmocka_unit_test(a_joint_gets_where_it_wants_nearly_as_fast_as_it_may),
-      cmocka_unit_test(a_wish_too_fast_is_scaled_and_keeps_its_direction),
-      cmocka_unit_test(what_acted_is_told),
+      cmocka_unit_test(braking_from_the_stopping_velocity_stops_within_the_gap),
+      cmocka_unit_test(a_random_walk_of_extreme_nominal_velocities_never_leaves_the_limits),
+      cmocka_unit_test(a_joint_reaches_its_goal_nearly_as_fast_as_the_limits_allow),
+      cmocka_unit_test(a_nominal_velocity_beyond_the_limits_is_scaled_and_keeps_its_direction),
+      cmocka_unit_test(the_limits_that_acted_are_reported),
       cmocka_unit_test(a_joint_outside_its_position_limits_returns),
-      cmocka_unit_test(a_joint_too_fast_to_stop_gets_the_hardest_braking),
-      cmocka_unit_test(the_worse_of_two_positions_counts),
+      cmocka_unit_test(a_joint_too_fast_to_stop_brakes_at_its_acceleration_limit),
+      cmocka_unit_test(the_position_nearer_to_each_limit_counts),
       cmocka_unit_test(brake_reaches_exactly_zero_and_stays),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

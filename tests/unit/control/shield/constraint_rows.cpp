@@ -206,7 +206,7 @@ void pass_rows_are_the_gradients_of_the_closest_approach(void**) {
     const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     scene.add(obstacle);
     const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
-    if (obstacle.is_box() || pair.approach.head_on || pair.approach.axis_distance_m < kKink_m) continue;
+    if (obstacle.shape == Shape::kBox || pair.approach.head_on || pair.approach.axis_distance_m < kKink_m) continue;
     Obstacle point = sphere_obstacle(pair.now.on_obstacle, obstacle.capsule.radius_m);
     point.velocity_mps = obstacle.velocity_mps;
     const JointVector expected = gradient(scene.q_rad, [&](const LinkPoses& poses) {

@@ -131,7 +131,7 @@ void a_box_arrives_with_its_corners_and_a_capsule_that_encloses_them(void**) {
     const obstacle_t sent = random_obstacle(random, obstacle_t::BOX);
     assert_true(admit(admission, encoded(obstacles_message(trial, {sent})), *set));
     const Obstacle& obstacle = set->obstacles[0];
-    assert_true(obstacle.is_box());
+    assert_true(obstacle.shape == Shape::kBox);
     const Box box = box_of(obstacle);
     double farthest_m = 0.0;
     for (int corner = 0; corner < 8; ++corner) {

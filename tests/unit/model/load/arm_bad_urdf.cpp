@@ -1,4 +1,4 @@
-#include "firmware/model/arm.h"
+#include "firmware/model/load/load_arm.h"
 #include "tests/support/check.h"
 #include "tests/support/scratch.h"
 
@@ -17,7 +17,7 @@ std::string lwa3() {
   return text_of("urdf/lwa3.urdf");
 }
 
-/// A URDF of n joints about z, one above the other.
+/// A URDF of a number of joints about z, one above the other.
 std::string tower(int joints) {
   std::string text =
       R"(<robot name="tower"><link name="l0"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>)";
@@ -30,12 +30,12 @@ std::string tower(int joints) {
   return text + "</robot>";
 }
 
-/// What is said about a URDF; empty when it loads and its limits are right.
-std::string said(const std::string& file, const std::string& base = "base_link", const std::string& tip = "tool") {
+/// The error message for a URDF; empty if it loads and its limits are valid.
+std::string error_of(const std::string& file, const std::string& base = "base_link", const std::string& tip = "tool") {
   return message_of([&] { check_limits(load_arm(file, base, tip)); });
 }
 
-void a_bad_urdf_is_refused_with_one_line_naming_file_and_culprit(void**) {
+void a_bad_urdf_is_refused_with_one_line_that_names_file_and_culprit(void**) {
   const std::string good = lwa3();
   const struct {
     const char* name;
@@ -71,7 +71,7 @@ void a_bad_urdf_is_refused_with_one_line_naming_file_and_culprit(void**) {
   int wrong = 0;
   for (const auto& bad : cases) {
     const std::string file = scratch_file(std::string(bad.name) + ".urdf", replaced(good, bad.from, bad.to));
-    const std::string message = said(file);
+    const std::string message = error_of(file);
     if (one_line_with(message, {file, bad.culprit})) continue;
     print_error("%s -> '%s'\n", bad.name, message.c_str());
     ++wrong;
@@ -81,22 +81,22 @@ void a_bad_urdf_is_refused_with_one_line_naming_file_and_culprit(void**) {
 
 void a_wrong_chain_is_refused_with_one_line(void**) {
   const std::string file = "urdf/lwa3.urdf";
-  check(one_line_with(said("urdf/none.urdf"), {"urdf/none.urdf"}), "missing file");
-  check(one_line_with(said("urdf"), {"urdf: cannot be read"}), "a folder");
-  check(one_line_with(said(file, "nowhere"), {file, "nowhere"}), "missing base");
-  check(one_line_with(said(file, "base_link", "nowhere"), {file, "nowhere"}), "missing tip");
-  check(one_line_with(said(file, "tool", "base_link"), {file, "tool", "base_link"}), "base below tip");
-  check(one_line_with(said(file, "forearm_link"), {file, "forearm_link"}), "too few joints");
-  check(one_line_with(said(file, "tool", "tool"), {file, "tool"}), "base is tip");
-  check(one_line_with(said(scratch_file("empty.urdf", "")), {"empty.urdf"}), "empty file");
-  check(one_line_with(said(scratch_file("zeros.urdf", std::string(4096, '\0'))), {"zeros.urdf"}), "zeros");
-  check(one_line_with(said(scratch_file("no_link.urdf", "<robot name='x'/>")), {"no_link.urdf"}), "no link");
+  check(one_line_with(error_of("urdf/none.urdf"), {"urdf/none.urdf"}), "missing file");
+  check(one_line_with(error_of("urdf"), {"urdf: cannot be read"}), "a folder");
+  check(one_line_with(error_of(file, "nowhere"), {file, "nowhere"}), "missing base");
+  check(one_line_with(error_of(file, "base_link", "nowhere"), {file, "nowhere"}), "missing tip");
+  check(one_line_with(error_of(file, "tool", "base_link"), {file, "tool", "base_link"}), "base below tip");
+  check(one_line_with(error_of(file, "forearm_link"), {file, "forearm_link"}), "too few joints");
+  check(one_line_with(error_of(file, "tool", "tool"), {file, "tool"}), "base is tip");
+  check(one_line_with(error_of(scratch_file("empty.urdf", "")), {"empty.urdf"}), "empty file");
+  check(one_line_with(error_of(scratch_file("zeros.urdf", std::string(4096, '\0'))), {"zeros.urdf"}), "zeros");
+  check(one_line_with(error_of(scratch_file("no_link.urdf", "<robot name='x'/>")), {"no_link.urdf"}), "no link");
 }
 
-void joints_are_counted(void**) {
+void a_chain_has_6_to_10_joints(void**) {
   for (int joints = 0; joints <= 12; ++joints) {
     const std::string tip = "l" + std::to_string(joints), file = scratch_file("tower.urdf", tower(joints));
-    const std::string message = said(file, "l0", tip);
+    const std::string message = error_of(file, "l0", tip);
     const bool right = joints >= kMinJoints && joints <= kMaxJoints;
     check(right ? message.empty() : one_line_with(message, {file, "joints"}), "%d joints: '%s'", joints,
           message.c_str());
@@ -106,10 +106,11 @@ void joints_are_counted(void**) {
 void an_arm_without_collision_geometry_is_refused(void**) {
   const std::string baseline =
       replaced(tower(7), "<collision><geometry><sphere radius=\"0.1\"/></geometry></collision>", "");
-  check(one_line_with(said(scratch_file("bare.urdf", baseline), "l0", "l7"), {"bare.urdf", "collision"}), "no shape");
+  check(one_line_with(error_of(scratch_file("bare.urdf", baseline), "l0", "l7"), {"bare.urdf", "collision"}),
+        "no shape");
 }
 
-void shapes_are_counted_after_pruning(void**) {
+void at_most_64_shapes_count_after_those_inside_others_are_removed(void**) {
   const auto with_spheres = [](int count, double apart_m) {
     std::string shapes;
     for (int i = 0; i < count; ++i)
@@ -118,13 +119,13 @@ void shapes_are_counted_after_pruning(void**) {
     return scratch_file("spheres.urdf",
                         replaced(tower(6), "<link name='l6'/>", "<link name='l6'>" + shapes + "</link>"));
   };
-  assert_string_equal(said(with_spheres(kMaxShapes - 1, 0.3), "l0", "l6").c_str(), "");
-  check(one_line_with(said(with_spheres(kMaxShapes, 0.3), "l0", "l6"), {"spheres.urdf", "65"}), "one too many");
-  // All in one place they are one.
+  assert_string_equal(error_of(with_spheres(kMaxShapes - 1, 0.3), "l0", "l6").c_str(), "");
+  check(one_line_with(error_of(with_spheres(kMaxShapes, 0.3), "l0", "l6"), {"spheres.urdf", "65"}), "one too many");
+  // 200 equal spheres are reduced to one.
   assert_int_equal(load_arm(with_spheres(200, 0.0), "l0", "l6").shapes.size(), 2);
 }
 
-void limits_are_checked(void**) {
+void wrong_limits_are_refused(void**) {
   const struct {
     const char* limit;
     const char* word;
@@ -136,7 +137,7 @@ void limits_are_checked(void**) {
   };
   for (const auto& bad : cases) {
     const std::string text = replaced(replaced(lwa3(), R"(upper="1.97")", R"(upper="1.971")"), kJoint4, bad.limit);
-    const std::string message = said(scratch_file("limits.urdf", text));
+    const std::string message = error_of(scratch_file("limits.urdf", text));
     check(one_line_with(message, {"joint_4", bad.word}), "%s: '%s'", bad.limit, message.c_str());
   }
 }
@@ -146,23 +147,24 @@ void an_endless_joint_needs_a_velocity_limit(void**) {
                                     R"(name="joint_4" type="continuous")");
   const std::string file = scratch_file(
       "endless.urdf", replaced(text, R"(name="joint_2" type="revolute")", R"(name="joint_2" type="continuous")"));
-  const std::string message = said(file);
+  const std::string message = error_of(file);
   check(one_line_with(message, {"velocity"}), "'%s'", message.c_str());
 }
 
-void a_urdf_without_end_is_refused(void**) {
+void a_urdf_of_too_many_tags_or_bytes_is_refused(void**) {
   std::string nested = "<robot name='x'>";
   for (int i = 0; i < 500000; ++i) nested += "<a>";
-  check(one_line_with(said(scratch_file("nested.urdf", nested)), {"nested.urdf", "tags"}), "nested");
-  check(one_line_with(said(scratch_file("tower.urdf", tower(50000)), "l0", "l6"), {"tower.urdf", "tags"}), "a tower");
-  check(one_line_with(said("/dev/zero"), {"/dev/zero", "larger"}), "endless");
+  check(one_line_with(error_of(scratch_file("nested.urdf", nested)), {"nested.urdf", "tags"}), "nested");
+  check(one_line_with(error_of(scratch_file("tower.urdf", tower(50000)), "l0", "l6"), {"tower.urdf", "tags"}),
+        "a tower");
+  check(one_line_with(error_of("/dev/zero"), {"/dev/zero", "larger"}), "endless");
 }
 
 void a_truncated_urdf_never_crashes(void**) {
   const std::string good = lwa3();
   int loaded = 0;
   for (size_t length = 0; length < good.size(); length += 50) {
-    const std::string message = said(scratch_file("truncated.urdf", good.substr(0, length)));
+    const std::string message = error_of(scratch_file("truncated.urdf", good.substr(0, length)));
     check(message.empty() || one_line_with(message, {"truncated.urdf"}), "%zu bytes: '%s'", length, message.c_str());
     loaded += message.empty();
   }
@@ -173,14 +175,14 @@ void a_truncated_urdf_never_crashes(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_bad_urdf_is_refused_with_one_line_naming_file_and_culprit),
+      cmocka_unit_test(a_bad_urdf_is_refused_with_one_line_that_names_file_and_culprit),
       cmocka_unit_test(a_wrong_chain_is_refused_with_one_line),
-      cmocka_unit_test(joints_are_counted),
+      cmocka_unit_test(a_chain_has_6_to_10_joints),
       cmocka_unit_test(an_arm_without_collision_geometry_is_refused),
-      cmocka_unit_test(shapes_are_counted_after_pruning),
-      cmocka_unit_test(limits_are_checked),
+      cmocka_unit_test(at_most_64_shapes_count_after_those_inside_others_are_removed),
+      cmocka_unit_test(wrong_limits_are_refused),
       cmocka_unit_test(an_endless_joint_needs_a_velocity_limit),
-      cmocka_unit_test(a_urdf_without_end_is_refused),
+      cmocka_unit_test(a_urdf_of_too_many_tags_or_bytes_is_refused),
       cmocka_unit_test(a_truncated_urdf_never_crashes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,4 +1,4 @@
-// What the base link of an arm is fixed to: a pedestal, a torso, a table.
+// The structure that the base link of an arm is fixed to: a pedestal, a torso, a table.
 
 #include <algorithm>
 
@@ -17,8 +17,7 @@ namespace {
 
 const Vector3 kPlate_m(0.7, 0.6, 0.04), kPlatePlace_m(-0.8, 0.0, 0.35);
 
-/// The LWA3 on a torso that is half a metre below its base, is turned by a right angle and carries a plate beside the
-/// arm and another arm.
+/// The LWA3 on a torso half a metre below its base and rotated by a right angle, with a plate and another arm.
 std::string on_a_torso() {
   const std::string torso = R"(
   <link name="torso"><collision><geometry><box size="0.3 0.2 0.2"/></geometry></collision></link>
@@ -39,7 +38,7 @@ std::vector<LinkShape> shapes_of(const Arm& arm, const std::string& link) {
   return found;
 }
 
-void a_torso_and_what_is_fixed_to_it_are_there_but_not_its_other_arm(void**) {
+void a_torso_and_the_links_fixed_to_it_have_shapes_but_its_other_arm_has_none(void**) {
   const Arm arm = load_arm(on_a_torso(), "base_link", "tool");
   for (const char* link : {"torso", "plate"}) {
     const auto shapes = shapes_of(arm, link);
@@ -52,8 +51,8 @@ void a_torso_and_what_is_fixed_to_it_are_there_but_not_its_other_arm(void**) {
                    test::lwa3().shapes.size());
 }
 
-/// The frames are the base link's; and a flat box does not take the room above it.
-void a_plate_is_covered_where_it_is_and_little_more(void**) {
+/// The shapes are in the frame of the base link. Those of a flat box do not fill the space above it.
+void a_plate_is_enclosed_by_capsules_hardly_thicker(void**) {
   const auto shapes = shapes_of(load_arm(on_a_torso(), "base_link", "tool"), "plate");
   const auto distance_m = [&](const Vector3& point) {
     double least_m = 1e9;
@@ -71,7 +70,7 @@ void a_plate_is_covered_where_it_is_and_little_more(void**) {
   check(distance_m(kPlatePlace_m + Vector3(0, 0, 0.02 + 0.03)) > 0.0, "the capsules reach 3 cm above the plate");
 }
 
-void what_touches_the_first_links_as_it_is_built_is_no_pair(void**) {
+void a_pedestal_that_touches_the_first_links_forms_no_pair_with_them(void**) {
   const Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
   assert_int_equal(shapes_of(arm, "pedestal").size(), 1);
   bool far = false;
@@ -107,7 +106,7 @@ double reach_under_the_plate(const Model& model) {
 void the_arm_keeps_clear_of_the_plate(void**) {
   Model model = test::lwa3_model("sidestep");
   const double without_m = reach_under_the_plate(model);
-  check(without_m < 0.0, "the plate is not in the way: %g m", without_m);
+  check(without_m < 0.0, "without its shapes the arm does not touch the plate: %g m", without_m);
   const JointLimits limits = model.arm.limits;
   model.arm = load_arm(on_a_torso(), "base_link", "tool");
   model.arm.limits = limits;
@@ -121,9 +120,9 @@ void the_arm_keeps_clear_of_the_plate(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_torso_and_what_is_fixed_to_it_are_there_but_not_its_other_arm),
-      cmocka_unit_test(a_plate_is_covered_where_it_is_and_little_more),
-      cmocka_unit_test(what_touches_the_first_links_as_it_is_built_is_no_pair),
+      cmocka_unit_test(a_torso_and_the_links_fixed_to_it_have_shapes_but_its_other_arm_has_none),
+      cmocka_unit_test(a_plate_is_enclosed_by_capsules_hardly_thicker),
+      cmocka_unit_test(a_pedestal_that_touches_the_first_links_forms_no_pair_with_them),
       cmocka_unit_test(the_arm_keeps_clear_of_the_plate),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

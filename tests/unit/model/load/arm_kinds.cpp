@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/model/kinematics.h"
+#include "firmware/model/load/load_arm.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 
@@ -54,7 +55,7 @@ void every_kind_of_arm_loads(void**) {
   }
 }
 
-void fk_agrees_with_kdl_whatever_the_axes(void**) {
+void fk_agrees_with_kdl_for_any_axes(void**) {
   for (const Kind& kind : kKinds) {
     const Arm arm = load_arm(kind.file, kind.base, kind.tip);
     KDL::ChainFkSolverPos_recursive solver(arm.chain);
@@ -72,7 +73,7 @@ void fk_agrees_with_kdl_whatever_the_axes(void**) {
   }
 }
 
-void jacobian_agrees_with_kdl_whatever_the_axes(void**) {
+void the_jacobian_agrees_with_kdl_for_any_axes(void**) {
   for (const Kind& kind : kKinds) {
     const Arm arm = load_arm(kind.file, kind.base, kind.tip);
     KDL::ChainJntToJacSolver solver(arm.chain);
@@ -87,7 +88,7 @@ void jacobian_agrees_with_kdl_whatever_the_axes(void**) {
   }
 }
 
-/// The capsule of a collision shape in the shape's own frame, by hand.
+/// The expected capsule of a collision shape, in the frame of the shape.
 Capsule local_capsule(const urdf::Geometry& geometry) {
   if (geometry.type == urdf::Geometry::SPHERE)
     return {Vector3::Zero(), Vector3::Zero(), static_cast<const urdf::Sphere&>(geometry).radius};
@@ -103,7 +104,7 @@ KDL::Vector at(const KDL::Frame& frame, const Vector3& p) {
   return frame * KDL::Vector(p.x(), p.y(), p.z());
 }
 
-/// Where KDL's tree solver puts the shapes of a link, side branches at their zero.
+/// The capsules of a link by KDL's tree solver, with the joints of side branches at zero.
 std::vector<Capsule> expected_capsules(const urdf::ModelInterface& model, const KDL::Tree& tree, const Arm& arm,
                                        const std::string& base, const std::string& link, const JointVector& q_rad) {
   KDL::JntArray joints(tree.getNrOfJoints());
@@ -128,7 +129,7 @@ std::vector<Capsule> expected_capsules(const urdf::ModelInterface& model, const 
   return capsules;
 }
 
-/// All shapes in arm6 and arm8 are there, on the right body, and where KDL puts them at any pose.
+/// All shapes of arm6 and arm8 exist, belong to the right body and are where KDL computes them in any configuration.
 void shapes_stay_on_their_links(void**) {
   for (const Kind& kind : {kKinds[0], kKinds[1]}) {
     const Arm arm = load_arm(kind.file, kind.base, kind.tip);
@@ -153,7 +154,7 @@ void shapes_stay_on_their_links(void**) {
   }
 }
 
-void what_is_fixed_to_the_arm_counts_and_so_does_what_carries_it(void**) {
+void the_links_attached_to_the_arm_and_those_below_it_belong_to_the_right_body(void**) {
   const Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
   std::map<std::string, int> body_of;
   for (const LinkShape& shape : arm.shapes) body_of[shape.link] = shape.body;
@@ -163,7 +164,7 @@ void what_is_fixed_to_the_arm_counts_and_so_does_what_carries_it(void**) {
   assert_true(body_of == expected);
 }
 
-void an_endless_joint_has_no_position_limits(void**) {
+void a_continuous_joint_has_no_position_limits(void**) {
   const JointLimits limits = load_arm("tests/data/arm6.urdf", "foot", "tip").limits;
   const double infinity = std::numeric_limits<double>::infinity();
   const double lower[] = {-3, -2, -infinity, -2.5, -1.5, -infinity}, upper[] = {2.5, 2, infinity, 2.6, 1.4, infinity};
@@ -180,11 +181,11 @@ void an_endless_joint_has_no_position_limits(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_kind_of_arm_loads),
-      cmocka_unit_test(fk_agrees_with_kdl_whatever_the_axes),
-      cmocka_unit_test(jacobian_agrees_with_kdl_whatever_the_axes),
+      cmocka_unit_test(fk_agrees_with_kdl_for_any_axes),
+      cmocka_unit_test(the_jacobian_agrees_with_kdl_for_any_axes),
       cmocka_unit_test(shapes_stay_on_their_links),
-      cmocka_unit_test(what_is_fixed_to_the_arm_counts_and_so_does_what_carries_it),
-      cmocka_unit_test(an_endless_joint_has_no_position_limits),
+      cmocka_unit_test(the_links_attached_to_the_arm_and_those_below_it_belong_to_the_right_body),
+      cmocka_unit_test(a_continuous_joint_has_no_position_limits),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -13,7 +13,7 @@ using test::Random;
 
 namespace {
 
-/// The chain of paper-notes.md, "The arm": Craig's convention, signs of alpha flipped, a = 0, and the tool behind it.
+/// The chain of paper-notes.md, "The arm": Craig's convention, signs of alpha flipped, a = 0, then the tool.
 Eigen::Isometry3d craig(const JointVector& q_rad) {
   const double alpha_rad[] = {0, M_PI / 2, -M_PI / 2, M_PI / 2, -M_PI / 2, M_PI / 2, -M_PI / 2};
   const double d_m[] = {0.300, 0, 0.328, 0, 0.2765, 0, 0};
@@ -41,7 +41,7 @@ void home_is_the_papers_home(void**) {
   check_near(poses.tool_rotation, Matrix3(Matrix3::Identity()), 1e-9);
 }
 
-void fk_agrees_with_the_dh_chain_at_random_poses(void**) {
+void fk_agrees_with_the_dh_chain_in_random_configurations(void**) {
   Random random(1);
   for (int trial = 0; trial < 1000; ++trial) {
     const JointVector q_rad = random.poses(lwa3());
@@ -51,7 +51,7 @@ void fk_agrees_with_the_dh_chain_at_random_poses(void**) {
   }
 }
 
-void fk_agrees_with_kdl_at_random_poses(void**) {
+void fk_agrees_with_kdl_in_random_configurations(void**) {
   KDL::ChainFkSolverPos_recursive solver(lwa3().chain);
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
@@ -67,7 +67,7 @@ void fk_agrees_with_kdl_at_random_poses(void**) {
   }
 }
 
-void tool_jacobian_agrees_with_kdl_at_random_poses(void**) {
+void the_tool_jacobian_agrees_with_kdl_in_random_configurations(void**) {
   KDL::ChainJntToJacSolver solver(lwa3().chain);
   Random random(3);
   KDL::Jacobian expected(7);
@@ -80,13 +80,13 @@ void tool_jacobian_agrees_with_kdl_at_random_poses(void**) {
   }
 }
 
-void point_jacobian_is_the_derivative_of_the_point(void**) {
+void a_point_jacobian_is_the_derivative_of_the_point(void**) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {
     const JointVector q_rad = random.poses(lwa3());
     const int body = random.index(8);
     const Vector3 p_body = random.inside(-0.3, 0.3);
-    const auto place = [&](const JointVector& q) {
+    const auto position = [&](const JointVector& q) {
       const LinkPoses poses = forward_kinematics(lwa3(), q);
       const size_t i = static_cast<size_t>(body);
       return Vector3(poses.origin[i] + poses.rotation[i] * p_body);
@@ -96,11 +96,11 @@ void point_jacobian_is_the_derivative_of_the_point(void**) {
       JointVector after = q_rad, before = q_rad;
       after[joint] += 1e-5;
       before[joint] -= 1e-5;
-      expected.col(joint) = (place(after) - place(before)) / 2e-5;
+      expected.col(joint) = (position(after) - position(before)) / 2e-5;
     }
-    const PointJacobian jacobian = point_jacobian(forward_kinematics(lwa3(), q_rad), body, place(q_rad));
+    const PointJacobian jacobian = point_jacobian(forward_kinematics(lwa3(), q_rad), body, position(q_rad));
     check_near_because(jacobian, expected, 1e-8, "trial %d, body %d", trial, body);
-    for (int joint = body; joint < 7; ++joint) check(jacobian.col(joint).isZero(0.0), "joint behind body %d", body);
+    for (int joint = body; joint < 7; ++joint) check(jacobian.col(joint).isZero(0.0), "joint beyond body %d", body);
   }
 }
 
@@ -123,7 +123,7 @@ void the_arm_is_four_capsules_of_five_centimetres(void**) {
   }
 }
 
-/// Shoulder, elbow, wrist and tool point lie on the capsules' ends, whatever the pose.
+/// Shoulder, elbow, wrist and tool point are the ends of the capsules' axes in any configuration.
 void the_capsules_join_shoulder_elbow_wrist_and_tool(void**) {
   Random random(5);
   for (int trial = 0; trial < 100; ++trial) {
@@ -157,10 +157,10 @@ void limits_are_those_of_the_public_models(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(home_is_the_papers_home),
-      cmocka_unit_test(fk_agrees_with_the_dh_chain_at_random_poses),
-      cmocka_unit_test(fk_agrees_with_kdl_at_random_poses),
-      cmocka_unit_test(tool_jacobian_agrees_with_kdl_at_random_poses),
-      cmocka_unit_test(point_jacobian_is_the_derivative_of_the_point),
+      cmocka_unit_test(fk_agrees_with_the_dh_chain_in_random_configurations),
+      cmocka_unit_test(fk_agrees_with_kdl_in_random_configurations),
+      cmocka_unit_test(the_tool_jacobian_agrees_with_kdl_in_random_configurations),
+      cmocka_unit_test(a_point_jacobian_is_the_derivative_of_the_point),
       cmocka_unit_test(the_arm_is_four_capsules_of_five_centimetres),
       cmocka_unit_test(the_capsules_join_shoulder_elbow_wrist_and_tool),
       cmocka_unit_test(limits_are_those_of_the_public_models),

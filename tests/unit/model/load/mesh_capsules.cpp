@@ -62,7 +62,7 @@ void every_point_of_every_triangle_is_enclosed(void**) {
   }
 }
 
-void a_capsule_is_found_again(void**) {
+void points_on_a_capsule_give_that_capsule(void**) {
   Random random(2);
   std::vector<Vector3> points;
   const Vector3 axis = Vector3(1, 2, 3).normalized();
@@ -110,7 +110,7 @@ void meshes_are_read_and_scaled(void**) {
   }
 }
 
-void a_package_is_looked_for_on_the_path_and_above_the_urdf(void**) {
+void a_package_is_searched_on_the_path_and_above_the_urdf(void**) {
   namespace fs = std::filesystem;
   fs::create_directories(scratch_folder() + "/share/arms/meshes");
   fs::create_directories(scratch_folder() + "/share/arms/urdf");
@@ -155,7 +155,7 @@ void a_bad_mesh_is_refused_with_one_line(void**) {
   assert_true(one_line_with(message_of([] { load_mesh("no/such.stl", {1, 1, 1}); }), {"no/such.stl"}));
 }
 
-void a_broken_cache_is_made_anew(void**) {
+void a_damaged_cache_entry_is_computed_and_written_again(void**) {
   namespace fs = std::filesystem;
   setenv("XDG_CACHE_HOME", (scratch_folder() + "/cache").c_str(), 1);
   const Mesh mesh = load_mesh(block("cached.obj", {0.5, 0.1, 0.2}), {1, 1, 1});
@@ -174,7 +174,7 @@ void a_broken_cache_is_made_anew(void**) {
   check_near(fit_capsules_cached(mesh, 3).slack_m, fresh.slack_m, 0.0);
 }
 
-void the_simulator_measures_to_the_mesh_itself(void**) {
+void the_simulator_measures_distances_to_the_mesh_itself(void**) {
   const auto [solid, centre_m] =
       sim::load_mesh_solid("file://" + block("truth.obj", {0.4, 0.2, 0.1}), "x.urdf", {}, {1, 1, 1});
   check_near(centre_m, Vector3(0.2, 0.1, 0.05), 1e-6);
@@ -198,13 +198,13 @@ void the_simulator_measures_to_the_mesh_itself(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_point_of_every_triangle_is_enclosed),
-      cmocka_unit_test(a_capsule_is_found_again),
+      cmocka_unit_test(points_on_a_capsule_give_that_capsule),
       cmocka_unit_test(cutting_a_bent_mesh_reduces_its_slack),
       cmocka_unit_test(meshes_are_read_and_scaled),
-      cmocka_unit_test(a_package_is_looked_for_on_the_path_and_above_the_urdf),
+      cmocka_unit_test(a_package_is_searched_on_the_path_and_above_the_urdf),
       cmocka_unit_test(a_bad_mesh_is_refused_with_one_line),
-      cmocka_unit_test(a_broken_cache_is_made_anew),
-      cmocka_unit_test(the_simulator_measures_to_the_mesh_itself),
+      cmocka_unit_test(a_damaged_cache_entry_is_computed_and_written_again),
+      cmocka_unit_test(the_simulator_measures_distances_to_the_mesh_itself),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -40,7 +40,7 @@ void the_lwa3_has_three_pairs_that_can_meet(void**) {
   check(found == expected, "found %s", text.c_str());
 }
 
-void the_pairs_are_the_same_every_time(void**) {
+void the_pairs_are_the_same_on_every_call(void**) {
   const char* const arms[][3] = {{"tests/data/arm6.urdf", "foot", "tip"},
                                  {"tests/data/arm8.urdf", "mount", "flange"},
                                  {"tests/data/arm10.urdf", "l0", "l10"}};
@@ -55,16 +55,16 @@ void the_pairs_are_the_same_every_time(void**) {
   }
 }
 
-/// As wide a clearance as no posture has would be asked for in vain, in every cycle.
-void no_pair_is_held_farther_apart_than_it_is_built(void**) {
+/// A clearance that no configuration has would be demanded in vain in every cycle.
+void pairs_that_never_reach_the_clearance_are_overlaps(void**) {
   const size_t all = find_self_pairs(lwa3()).size() + find_overlaps(lwa3()).size();
   check(find_self_pairs(lwa3(), 0.02).size() == 3, "%zu at 2 cm", find_self_pairs(lwa3(), 0.02).size());
   check(find_self_pairs(lwa3(), 2.0).empty(), "%zu at 2 m", find_self_pairs(lwa3(), 2.0).size());
   check(find_overlaps(lwa3(), 2.0).size() == all, "%zu at 2 m", find_overlaps(lwa3(), 2.0).size());
 }
 
-/// The wish that folds the arm as fast as it can onto itself where it is nearest.
-JointVector folding_wish(const Arm& arm, const LinkPoses& poses, const Pairs& pairs, double& least_m) {
+/// The nominal velocity that closes the nearest pair as fast as the joints can move.
+JointVector folding_nominal(const Arm& arm, const LinkPoses& poses, const Pairs& pairs, double& least_m) {
   JointVector nominal_radps = JointVector::Zero(arm.joints);
   least_m = 1e9;
   for (const auto& pair : pairs) {
@@ -81,7 +81,7 @@ JointVector folding_wish(const Arm& arm, const LinkPoses& poses, const Pairs& pa
   return nominal_radps;
 }
 
-void an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself(void**) {
+void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void**) {
   const Model model = test::lwa3_model("sidestep");
   const auto nothing = std::make_unique<ObstacleSet>();
   const ObstacleView view{nothing.get(), 0.0, 0.0};
@@ -91,11 +91,11 @@ void an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself(void**) {
   for (int trial = 0; trial < 60; ++trial) {
     JointVector q_rad = random.poses(model.arm, 0.95), last_radps = JointVector::Zero(7);
     double least_m = 0.0, nearest_m = 1.0;
-    folding_wish(model.arm, forward_kinematics(model.arm, q_rad), model.self_pairs, least_m);
+    folding_nominal(model.arm, forward_kinematics(model.arm, q_rad), model.self_pairs, least_m);
     if (least_m < 0.05) continue;
     for (int cycle = 0; cycle < 300; ++cycle) {
       const LinkPoses poses = forward_kinematics(model.arm, q_rad);
-      const JointVector nominal_radps = folding_wish(model.arm, poses, model.self_pairs, least_m);
+      const JointVector nominal_radps = folding_nominal(model.arm, poses, model.self_pairs, least_m);
       check(least_m >= 0.0, "trial %d, cycle %d: %g m", trial, cycle, least_m);
       nearest_m = std::min(nearest_m, least_m);
       const ShieldInput around{model.arm,        poses,      q_rad, last_radps, clearance, view,
@@ -116,9 +116,9 @@ void an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_lwa3_has_three_pairs_that_can_meet),
-      cmocka_unit_test(the_pairs_are_the_same_every_time),
-      cmocka_unit_test(no_pair_is_held_farther_apart_than_it_is_built),
-      cmocka_unit_test(an_arm_that_wants_to_fold_onto_itself_does_not_touch_itself),
+      cmocka_unit_test(the_pairs_are_the_same_on_every_call),
+      cmocka_unit_test(pairs_that_never_reach_the_clearance_are_overlaps),
+      cmocka_unit_test(a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
