@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <lcm/lcm-cpp.hpp>
 #include <queue>
 
+#include "firmware/base/command_line.h"
 #include "host/relay/impairment.h"
 
 namespace {
@@ -74,28 +74,24 @@ class Relay {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Forwards LCM messages from one network to another with the impairments of a bad network.");
+  sidestep::CommandLine app("Forwards LCM messages from one network to another with the impairments of a bad network.");
   std::string from, to;
   std::vector<std::string> rules;
   unsigned seed = 1;
-  app.add_option("--from", from, "LCM network to receive from")->required()->type_name("URL");
+  app.add_option("--from", from, "LCM network to receive from").required().type_name("URL");
   app.add_option("--to", to, "another LCM network, to send to; start a second relay for the opposite direction")
-      ->required()
-      ->type_name("URL");
+      .required()
+      .type_name("URL");
   app.add_option("--rule", rules,
                  "CHANNEL:drop=SHARE,duplicate=SHARE,reorder=SHARE,corrupt=SHARE,delay=S or delay=S..S; CHANNEL is a "
                  "regular expression; the first rule that matches applies, other channels are forwarded unchanged")
-      ->type_name("RULE");
-  app.add_option("--seed", seed, "seed of all random numbers")->capture_default_str();
+      .type_name("RULE");
+  app.add_option("--seed", seed, "seed of all random numbers").show_default();
   app.footer(
       "Example: relay --from udpm://239.255.76.67:7667 --to udpm://239.255.76.67:7668 \\\n"
       "               --rule 'ARM_STATE:drop=0.3,delay=0.005..0.05' --rule '.*:corrupt=0.01'\n"
       "Stops on Ctrl-C or SIGTERM. Exit codes: 0 stopped by a signal, 2 wrong arguments or no network.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, [](int) { stop = true; });
   std::signal(SIGTERM, [](int) { stop = true; });
   try {

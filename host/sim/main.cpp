@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <cmath>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
+#include "firmware/base/command_line.h"
 #include "host/sim/simulation.h"
 
 namespace {
@@ -17,11 +16,6 @@ enum ExitCode { kHeld = 0, kBroken = 1, kBadInput = 2, kNoController = 3, kInter
 
 std::atomic<bool> interrupted{false};
 
-/// CLI11's ranges accept nan.
-const CLI::Validator kNumber(
-    [](const std::string& text) { return std::isnan(std::strtod(text.c_str(), nullptr)) ? "is not a number" : ""; },
-    "");
-
 struct Options {
   std::string scenario, lcm_url, log_file, csv_file;
   bool lockstep = false;
@@ -29,23 +23,23 @@ struct Options {
   double patience_s = 30.0;
 };
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("--scenario", options.scenario, "scenario file, such as paper-c.yaml")->required()->type_name("FILE");
+void declare(sidestep::CommandLine& app, Options& options) {
+  app.add_option("--scenario", options.scenario, "scenario file, such as paper-c.yaml").required().type_name("FILE");
   app.add_flag("--lockstep", options.lockstep,
                "run on the arm's clock: deterministic, as fast as possible (the controller also needs --lockstep)");
   app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)")
-      ->type_name("URL");
+      .type_name("URL");
   app.add_option("--log", options.log_file, "write all messages to this log, in lcm-logger's format")
-      ->type_name("FILE");
+      .type_name("FILE");
   app.add_option("--csv", options.csv_file,
                  "write one row per control period to this file; with several arms one file each, with the arm's name "
                  "before the suffix")
-      ->type_name("FILE");
+      .type_name("FILE");
   app.add_option("--wait", options.patience_s, "exit when the controller does not track within this time, s")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86400.0))
-      ->check(kNumber)
-      ->type_name("SECONDS");
+      .show_default()
+      .range(0.1, 86400.0)
+      .not_nan()
+      .type_name("SECONDS");
   app.add_flag("--quiet", options.quiet, "no progress line");
   app.footer(
       "Exit code: 0 all expectations held, 1 one was broken, 2 bad arguments or files, 3 controller missing or lost,\n"
@@ -109,14 +103,10 @@ int simulate(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sidestep's simulator: plant, world and independent measurement for a controller connected by LCM.");
+  sidestep::CommandLine app("Sidestep's simulator: plant, world and independent measurement for a controller connected by LCM.");
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kHeld : kBadInput;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {
