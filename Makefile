@@ -242,7 +242,7 @@ $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BU
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
-$(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
+$(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a $(BUILD)/libfirmware.a
 	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a

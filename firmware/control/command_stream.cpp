@@ -52,13 +52,14 @@ bool CommandStream::at_rest() const {
   return !running || (velocity_radps.isZero(0.0) && rate_radps.isZero(0.0));
 }
 
-void check_continuity(const Model& model, const InputStatus& status, CommandStream& stream) {
-  if (status.clock_went_back) stream.stopped_s = -HUGE_VAL;
-  if (stream.running && status.cycles_paused) {
+void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream) {
+  const ArmContinuity& continuity = inputs.continuity;
+  if (continuity.clock_went_back) stream.stopped_s = -HUGE_VAL;
+  if (stream.running && continuity.cycles_paused) {
     stream.running = false;
-    stream.stopped_s = status.arm_waits_until_s + model.settings.period_s();  // resolution of the arm states
+    stream.stopped_s = continuity.arm_waits_until_s + model.settings.period_s();  // resolution of the arm states
   }
-  stream.running = stream.running && status.arm_follows && !status.arm_starting;
+  stream.running = stream.running && continuity.arm_follows && !inputs.status.arm_starting;
 }
 
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream) {
@@ -100,9 +101,9 @@ Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityR
   return {stream.position_rad, velocity_radps};
 }
 
-bool stream_continues(const CommandStream& stream, Mode mode, const InputStatus& status) {
-  if (status.arm_starting || mode == Mode::kWait) return false;
-  const bool arm_answers = status.arm_fresh && status.arm_received_s > stream.stopped_s;
+bool stream_continues(const CommandStream& stream, Mode mode, const MonitorResult& inputs) {
+  if (inputs.status.arm_starting || mode == Mode::kWait) return false;
+  const bool arm_answers = inputs.status.arm_fresh && inputs.continuity.arm_received_s > stream.stopped_s;
   if (!stream.running && !arm_answers) return false;
   return mode != Mode::kFault || !stream.at_rest();
 }

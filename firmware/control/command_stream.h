@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "firmware/control/supervisor.h"
+#include "firmware/control/input_monitor.h"
 #include "firmware/control/types/inputs.h"
 #include "firmware/control/types/model.h"
 #include "firmware/model/velocity_range.h"
@@ -29,7 +29,7 @@ struct CommandStream {
 
 /// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the measured arm could not
 /// have come from the last command, or when the driver has just started.
-void check_continuity(const Model& model, const InputStatus& status, CommandStream& stream);
+void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream);
 
 /// The first state of a new stream: at the position that the drives hold (else the measured one), with the velocity on
 /// which the reported one and the differentiated positions agree. arm_rate_radps: those differences, n x 1.
@@ -46,7 +46,7 @@ Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityR
 
 /// Whether commands are sent: the arm is followed by fresh states, and the mode commands it. In mode FAULT the stream
 /// runs until it is at rest.
-bool stream_continues(const CommandStream& stream, Mode mode, const InputStatus& status);
+bool stream_continues(const CommandStream& stream, Mode mode, const MonitorResult& inputs);
 
 /// A velocity within the limits: one uniform scale for the velocity limits, which keeps the direction, then each joint
 /// clamped to its range (docs/paper.md, item 10). Returns the Limiting bits of the limits that acted.

@@ -84,7 +84,7 @@ void report_scene(const LawInput& input, bool has_target, Report& report) {
 }
 
 /// From the measured arm to its command. There is an arm state.
-void move_arm(const Model& model, const Inputs& inputs, const InputStatus& status, double now_s, StageProbe& probe,
+void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& monitored, double now_s, StageProbe& probe,
               Result& result) {
   State& next = result.next;
   const ArmState& arm = *inputs.arm.message;
@@ -110,7 +110,7 @@ void move_arm(const Model& model, const Inputs& inputs, const InputStatus& statu
   if (!safe_radps.allFinite()) latch_not_finite(now_s, next);
   const Mode mode = next.supervision.mode;
   result.command = gate(model, mode, arm, range, safe_radps, next.stream, result.report.limiting);
-  next.stream.running = stream_continues(next.stream, mode, status);
+  next.stream.running = stream_continues(next.stream, mode, monitored);
   next.planned_mps.reset();
   if (mode == Mode::kTrack) next.planned_mps = nominal.tool_velocity_mps;
   probe.passed(Stage::kGate);
@@ -129,17 +129,17 @@ struct NoProbe : StageProbe {
 Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe) {
   Result result;
   State& next = result.next = state;
-  const InputStatus status = monitor_inputs(model, inputs, now_s, next.arm_monitor);
-  next.supervision = next_mode(state.supervision, status);
-  check_continuity(model, status, next.stream);
+  const MonitorResult monitored = monitor_inputs(model, inputs, now_s, next.arm_monitor);
+  next.supervision = next_mode(state.supervision, monitored.status);
+  check_continuity(model, monitored, next.stream);
   const bool was_running = next.stream.running;
-  if (status.arm_known) {
+  if (monitored.status.arm_known) {
     if (!was_running) {
       start_stream(model, *inputs.arm.message, next.arm_monitor.rate_radps, next.stream);
       next.planned_mps.reset();
     }
     NoProbe none;
-    move_arm(model, inputs, status, now_s, probe ? *probe : none, result);
+    move_arm(model, inputs, monitored, now_s, probe ? *probe : none, result);
   }
   Report& report = result.report;
   if (inputs.skipped_cycles > 0) report.limiting |= kLimitingLate;

@@ -36,7 +36,7 @@ double longest_gap_s(const Model& model, double limit_s) {
 /// Takes a new arm state into the monitor; without a new one nothing changes. Returns the time without an arm state
 /// before it, on the clock of the cycles, which stands still between two states in lockstep.
 double update_arm(const Model& model, const Latest<ArmState>& arm, double now_s, ArmMonitor& monitor,
-                  InputStatus& status) {
+                  MonitorResult& result) {
   if (arm.count == monitor.count) return 0.0;
   const bool first = monitor.count == 0;
   const double by_receipt_s = arm.received_s - monitor.received_s;
@@ -45,8 +45,8 @@ double update_arm(const Model& model, const Latest<ArmState>& arm, double now_s,
   const double elapsed_s = sent_apart_s(monitor.utime, arm.message->utime, by_receipt_s, lost_s);
   const bool agrees = first || reachable(model, monitor, *arm.message, elapsed_s);
   if (first || gap || !agrees) monitor.consistent_since_s = now_s;
-  status.arm_inconsistent = !agrees && !gap;
-  status.arm_follows = first || reachable(model, monitor, *arm.message, std::max(by_receipt_s, elapsed_s));
+  result.status.arm_inconsistent = !agrees && !gap;
+  result.continuity.arm_follows = first || reachable(model, monitor, *arm.message, std::max(by_receipt_s, elapsed_s));
   // States that came in between were received in time, but not read: then there was no silence.
   const bool next_in_count = !first && arm.count == monitor.count + 1;
   const double silence_s = next_in_count ? std::min(by_receipt_s, now_s - monitor.cycle_s) : 0.0;
@@ -62,9 +62,10 @@ double update_arm(const Model& model, const Latest<ArmState>& arm, double now_s,
 }
 
 void monitor_arm(const Model& model, const Latest<ArmState>& arm, double now_s, ArmMonitor& monitor,
-                 InputStatus& status) {
+                 MonitorResult& result) {
+  InputStatus& status = result.status;
   const Timeouts& timeouts = model.settings.timeouts;
-  const double silence_s = update_arm(model, arm, now_s, monitor, status);
+  const double silence_s = update_arm(model, arm, now_s, monitor, result);
   const auto in_time = [&](double limit_s) {
     return arm.fresh(now_s, limit_s) && silence_s <= longest_gap_s(model, limit_s);
   };
@@ -73,20 +74,22 @@ void monitor_arm(const Model& model, const Latest<ArmState>& arm, double now_s, 
   status.arm_lost = !in_time(timeouts.arm_state_lost_s);
   if (status.arm_lost) monitor.consistent_since_s = now_s;
   status.arm_consistent = now_s - monitor.consistent_since_s >= timeouts.consistent_s - kRounding_s;
-  status.arm_received_s = monitor.received_s;
+  result.continuity.arm_received_s = monitor.received_s;
 }
 
 }  // namespace
 
-InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor) {
+MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor) {
   const Timeouts& timeouts = model.settings.timeouts;
-  InputStatus status;
+  MonitorResult result;
+  InputStatus& status = result.status;
+  ArmContinuity& continuity = result.continuity;
   const double waits_s = longest_gap_s(model, kArmWaits_s);
-  status.cycles_paused = now_s - monitor.cycle_s > waits_s + kRounding_s;
-  status.arm_waits_until_s = monitor.cycle_s + waits_s;
-  status.clock_went_back = now_s < monitor.cycle_s;
+  continuity.cycles_paused = now_s - monitor.cycle_s > waits_s + kRounding_s;
+  continuity.arm_waits_until_s = monitor.cycle_s + waits_s;
+  continuity.clock_went_back = now_s < monitor.cycle_s;
   status.arm_known = inputs.arm.message != nullptr;
-  if (status.arm_known) monitor_arm(model, inputs.arm, now_s, monitor, status);
+  if (status.arm_known) monitor_arm(model, inputs.arm, now_s, monitor, result);
   monitor.cycle_s = now_s;
 
   const bool none_required = !inputs.obstacles.message && !model.settings.wait_for_obstacles;
@@ -99,7 +102,7 @@ InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_
   status.late = monitor.skipped_in_a_row >= kMaxSkippedCycles;
   status.stop = inputs.stop;
   status.foreign_command = now_s - inputs.foreign_command_s <= timeouts.consistent_s;
-  return status;
+  return result;
 }
 
 }  // namespace sidestep

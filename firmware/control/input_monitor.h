@@ -19,9 +19,23 @@ struct ArmMonitor {
   double cycle_s = 0.0;             ///< time of the last cycle
 };
 
+/// Whether the arm can still be executing the command stream; the input of the command stream (command_stream.h).
+struct ArmContinuity {
+  bool arm_follows = true;         ///< the arm can have come from its previous state within the elapsed time
+  bool cycles_paused = false;      ///< no cycle for 50 ms (or 1.5 periods): the arm has begun to stop on its own
+  double arm_waits_until_s = 0.0;  ///< when it began to, if cycles_paused
+  bool clock_went_back = false;    ///< this cycle is earlier than the previous one
+  double arm_received_s = 0.0;     ///< receipt of the newest arm state
+};
+
+struct MonitorResult {
+  InputStatus status;
+  ArmContinuity continuity;
+};
+
 /// Compares the ages of the inputs with their timeouts and the arm state with the previous one. Arm states are
 /// consistent when no gap exceeds timeouts.arm_state_lost_s, their utime advances, and no joint moves farther than its
 /// velocity limit allows in the elapsed time plus one period, plus 1 mrad of sensor noise. `monitor` is updated.
-InputStatus monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor);
+MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor);
 
 }  // namespace sidestep

@@ -4,7 +4,7 @@
 
 namespace sidestep {
 
-/// What input monitoring finds in one cycle (input_monitor.h); the input of the supervisor and of the command stream.
+/// What input monitoring finds in one cycle (input_monitor.h); the input of the supervisor.
 struct InputStatus {
   bool arm_known = false;       ///< an arm state was ever accepted
   bool arm_fresh = false;       ///< not older than timeouts.arm_state_s
@@ -12,18 +12,13 @@ struct InputStatus {
   bool arm_consistent = false;  ///< consistent for timeouts.consistent_s without interruption
   bool arm_starting = false;    ///< its driver started less than Settings::start_guard_s ago: must not receive commands
   bool arm_inconsistent = false;  ///< this cycle's arm state cannot follow the one before
-  bool arm_follows = true;        ///< the arm can have come from its previous state while commands were sent
   bool obstacles_known = false;   ///< a set was accepted, or none is required
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s
   bool target_known = false;
-  bool target_fresh = false;       ///< not older than timeouts.target_s
-  bool late = false;               ///< 3 or more cycles in a row were skipped
-  bool stop = false;               ///< the process has been asked to end
-  bool foreign_command = false;    ///< another controller commanded the arm within timeouts.consistent_s
-  bool clock_went_back = false;    ///< this cycle is earlier than the one before
-  bool cycles_paused = false;      ///< so long since the last cycle that the arm has begun to stop on its own
-  double arm_waits_until_s = 0.0;  ///< when it began to, if cycles_paused
-  double arm_received_s = 0.0;     ///< receipt of the newest arm state
+  bool target_fresh = false;     ///< not older than timeouts.target_s
+  bool late = false;             ///< 3 or more cycles in a row were skipped
+  bool stop = false;             ///< the process has been asked to end
+  bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
 
 /// Mode, fault and the reason for both in words.

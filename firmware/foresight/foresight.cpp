@@ -16,10 +16,6 @@ bool is_good(const Forecast& forecast) {
 
 }  // namespace
 
-bool foresees(const Settings& settings) {
-  return settings.foresight.enabled && settings.law == Law::kSidestep;
-}
-
 void Foresight::reset() {
   adopt(Guide{}, Forecast{});
   candidate_ = Guide{};

@@ -5,9 +5,6 @@
 
 namespace sidestep {
 
-/// Whether the settings use foresight: foresight.enabled with the sidestep law, the only law that follows guides.
-bool foresees(const Settings& settings);
-
 /// Detects by rollouts that the law would not arrive at the target or would collide, and searches for a guide that
 /// arrives. Large: lives on the heap.
 class Foresight {

@@ -37,7 +37,7 @@ void declare(CommandLine& app, Options& options) {
                  "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
       .show_default();
   app.add_option("--count", options.count, "scenes of each family")
-      ->show_default()
+      .show_default()
       .range(1, static_cast<int>(kMostScenes));
   app.add_option("--seed", options.seed, "seed of the run, from which the scenes' seeds follow")
       .show_default()

@@ -19,7 +19,7 @@ double monotonic_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Order of the queue: the earliest delivery is at the top.
+/// MessageOrder of the queue: the earliest delivery is at the top.
 struct DueLater {
   bool operator()(const Delivery& a, const Delivery& b) const { return a.due_s > b.due_s; }
 };

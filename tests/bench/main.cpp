@@ -121,7 +121,7 @@ struct Measured {
 /// Runs a closed loop with an ideal arm; every cycle has new messages.
 Measured measure(const Scene& scene, const char* law) {
   test::ClosedLoop loop(test::lwa3_model(law), test::home_rad());
-  loop.target_speaks = true;
+  loop.sends_target = true;
   scatter(scene, loop);
   Measured measured;
   bench::DistanceOnlyCycle distance_only;

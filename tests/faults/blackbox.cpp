@@ -10,7 +10,7 @@
 #include "tests/support/scratch.h"
 
 using namespace sidestep;
-using test::agreed;
+using test::agreeing_cycles;
 using test::LiveArm;
 using test::one_line_with;
 using test::Process;
@@ -76,7 +76,7 @@ struct Scene {
 
   /// Stops the arm states until the controller reports the fault.
   void stop_arm_states() {
-    arm.arm_speaks = false;
+    arm.sends_arm_state = false;
     assert_true(arm.run_until(Status::FAULT, 2.0));
   }
 
@@ -113,7 +113,7 @@ void a_fault_leaves_a_log_that_replays_bit_for_bit(void**) {
     Scene scene(law);
     const size_t older = logs("fault").size();
     scene.stop_arm_states();
-    assert_true(agreed(scene.await_log("fault", older)) > 100);
+    assert_true(agreeing_cycles(scene.await_log("fault", older)) > 100);
     assert_true(!scene.lacks_blackbox());
   }
 }
@@ -126,24 +126,24 @@ void a_fault_just_before_the_end_leaves_a_log(void**) {
     scene.stop_arm_states();
     scene.await_log("fault", older);
     assert_int_equal(logs("fault").size(), older + 1);
-    scene.arm.arm_speaks = true;
+    scene.arm.sends_arm_state = true;
     assert_true(scene.arm.run_until(Status::TRACK, 3.0));
   }
   scene.end();
   const std::vector<std::string> all = logs("fault");
   assert_int_equal(all.size(), older + 2);
-  for (size_t i = older; i < all.size(); ++i) assert_true(agreed(all[i]) > 100);
+  for (size_t i = older; i < all.size(); ++i) assert_true(agreeing_cycles(all[i]) > 100);
 }
 
 void a_signal_requests_a_log_and_the_arm_keeps_moving(void**) {
   Scene scene;
   for (int i = 0; i < 2; ++i) scene.request_log();
   scene.track();
-  assert_true(scene.arm.commands.complaint().empty());
+  assert_true(scene.arm.commands.violation().empty());
   scene.controller.signal(SIGUSR1);
   scene.end();
   assert_int_equal(logs("request").size(), 3);
-  for (const std::string& log : logs("request")) assert_true(agreed(log) > 100);
+  for (const std::string& log : logs("request")) assert_true(agreeing_cycles(log) > 100);
 }
 
 void a_replay_with_another_configuration_is_reported_as_different(void**) {
@@ -193,7 +193,7 @@ void check_undisturbed(Scene& scene) {
   scene.controller.signal(SIGUSR1);
   check(scene.await([&] { return scene.lacks_blackbox(); }), "%s", scene.controller.output().c_str());
   scene.track();
-  check(scene.arm.commands.complaint().empty(), "%s", scene.arm.commands.complaint().c_str());
+  check(scene.arm.commands.violation().empty(), "%s", scene.arm.commands.violation().c_str());
   check(scene.controller.output().find("blackbox: ") != std::string::npos, "%s", scene.controller.output().c_str());
 }
 
@@ -210,7 +210,7 @@ void a_folder_that_cannot_be_created_raises_the_flag_until_it_can(void**) {
   test::scratch_file("logs", "a file of this name");
   check_undisturbed(scene);
   fs::remove(log_folder());
-  agreed(scene.request_log());
+  agreeing_cycles(scene.request_log());
   assert_true(scene.await([&] { return !scene.lacks_blackbox(); }));
 }
 

@@ -29,8 +29,8 @@ IiwaDriver start_driver() {
 }
 
 void check_driver(const IiwaDriver& driver) {
-  check(driver.gave_up.empty(), "the driver gave up: %s", driver.gave_up.c_str());
-  check(driver.commands.complaint().empty(), "%s", driver.commands.complaint().c_str());
+  check(driver.stop_reason.empty(), "the driver gave up: %s", driver.stop_reason.c_str());
+  check(driver.commands.violation().empty(), "%s", driver.commands.violation().c_str());
 }
 
 /// Runs until the controller tracks and the arm moves.

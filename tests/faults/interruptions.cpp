@@ -43,7 +43,7 @@ void a_controller_stopped_and_continued_brakes_and_tracks_again(void**) {
 /// The simulator or driver ends and restarts with the arm in another configuration.
 void an_arm_that_returns_elsewhere_is_moved_from_its_measured_position(void**) {
   LiveScene scene("sidestep");
-  scene.arm.target_speaks = scene.arm.obstacles_speak = scene.arm.arm_speaks = false;
+  scene.arm.sends_target = scene.arm.sends_obstacles = scene.arm.sends_arm_state = false;
   scene.arm.run(0.4);
   assert_true(scene.arm.status().mode == Status::FAULT);
   check_stream(scene.arm);
@@ -85,7 +85,7 @@ void a_second_controller_waits_until_the_first_is_gone(void**) {
   };
   assert_true(reported_in(Status::WAIT));
   assert_false(reported_in(Status::BRAKE));
-  scene.arm.target_speaks = false;
+  scene.arm.sends_target = false;
   scene.arm.run(0.8);  // until the arm rests
   scene.controller.signal(SIGKILL);
   assert_int_equal(scene.controller.wait(1.0), 128 + SIGKILL);

@@ -138,7 +138,7 @@ void check_tracking_continues(LiveScene& scene, const char* what) {
 
 void a_flood_of_valid_messages_leaves_the_newest_in_use(void**) {
   LiveScene scene("sidestep");
-  scene.arm.obstacles_speak = false;
+  scene.arm.sends_obstacles = false;
   flood = std::make_unique<Flood>([](test::LcmPeer& peer, int64_t n) {
     peer.send("OBSTACLES",
               test::obstacles_message(n, {test::sphere(5, Vector3(0.9, 0.6, 0.6), 0.05, Vector3::Zero())}));

@@ -56,7 +56,7 @@ void a_loop_at_1000_hz_moves_the_arm_within_its_limits(void**) {
   check(std::abs(periods / duration_s - 1000.0) < 20.0, "%g Hz", periods / duration_s);
   check(arm.peer.commands.size() - commands > 1000, "%zu commands", arm.peer.commands.size() - commands);
   check(fastest_radps > 0.5, "%g rad/s", fastest_radps);
-  check(arm.commands.complaint().empty(), "%s", arm.commands.complaint().c_str());
+  check(arm.commands.violation().empty(), "%s", arm.commands.violation().c_str());
 }
 
 void one_cycle_integrates_over_the_configured_period(void**) {
@@ -65,7 +65,7 @@ void one_cycle_integrates_over_the_configured_period(void**) {
     model.settings.rate_hz = 1000.0;
     test::ClosedLoop loop(model, test::home_rad());
     loop.target.position_m = Vector3(-0.2, 0.3, 0.8);
-    loop.target_speaks = true;
+    loop.sends_target = true;
     loop.add_sphere(Vector3(0.2, 0.5, 0.8), Vector3(-0.1, 0, 0));
     assert_true(loop.run_until(Mode::kTrack, 1.0));
     loop.run(3.0);

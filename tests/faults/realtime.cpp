@@ -39,29 +39,29 @@ void the_loop_holds_its_rate(void**) {
 
 void no_command_is_sent_before_the_first_arm_state(void**) {
   LiveArm arm{test::lwa3().limits, test::home_rad()};
-  arm.arm_speaks = false;
+  arm.sends_arm_state = false;
   Process controller = start_controller("sidestep");
   assert_true(arm.run_until(Status::WAIT, 10.0));
   arm.run(1.0);
-  assert_true(arm.status().mode == Status::WAIT && arm.says("waiting for the first arm state"));
+  assert_true(arm.status().mode == Status::WAIT && arm.reports("waiting for the first arm state"));
   assert_int_equal(arm.peer.commands.size(), 0);
-  arm.arm_speaks = true;
+  arm.sends_arm_state = true;
   assert_true(arm.run_until(Status::TRACK, 3.0));
 }
 
 void missing_arm_states_brake_and_then_are_a_fault(void**) {
   for (const char* law : kLaws) {
     Scene scene(law);
-    scene.arm.arm_speaks = false;
+    scene.arm.sends_arm_state = false;
     scene.arm.run(1.0);
     bool braked = false;
     for (const Status& status : scene.arm.peer.statuses)
       braked |= status.mode == Status::BRAKE && status.message.find("arm state is too old") != std::string::npos;
     assert_true(braked);
-    assert_true(scene.arm.status().mode == Status::FAULT && scene.arm.says("no arm state"));
+    assert_true(scene.arm.status().mode == Status::FAULT && scene.arm.reports("no arm state"));
     assert_int_equal(scene.arm.status().fault, Status::FAULT_ARM_STATE_LOST);
     check_near(scene.arm.speed_radps(), 0.0, 0);
-    scene.arm.arm_speaks = true;
+    scene.arm.sends_arm_state = true;
     assert_true(scene.arm.run_until(Status::TRACK, 3.0));
     check_stream(scene.arm);
   }
@@ -69,16 +69,16 @@ void missing_arm_states_brake_and_then_are_a_fault(void**) {
 
 void old_obstacles_brake_and_an_old_target_leads_to_hold(void**) {
   Scene scene("sidestep");
-  scene.arm.obstacles_speak = false;
+  scene.arm.sends_obstacles = false;
   assert_true(scene.arm.run_until(Status::BRAKE, 1.0));
-  assert_true(scene.arm.says("obstacles are too old"));
+  assert_true(scene.arm.reports("obstacles are too old"));
   scene.arm.run(0.5);
   check_near(scene.arm.speed_radps(), 0.0, 0);
-  scene.arm.obstacles_speak = true;
+  scene.arm.sends_obstacles = true;
   assert_true(scene.arm.run_until(Status::TRACK, 1.0));
-  scene.arm.target_speaks = false;
+  scene.arm.sends_target = false;
   assert_true(scene.arm.run_until(Status::HOLD, 1.0));
-  assert_true(scene.arm.says("target is too old"));
+  assert_true(scene.arm.reports("target is too old"));
   check_stream(scene.arm);
 }
 
@@ -132,7 +132,7 @@ void a_flood_of_hostile_messages_changes_nothing(void**) {
   assert_true(scene.arm.run_until(Status::TRACK, 1.0));
   check(counted <= sent && counted > sent * 9 / 10, "%ld of %ld counted", counted, sent);
   check(tracking > 60, "tracking in %ld cycles", tracking);
-  check(scene.arm.says("rejected"), "%s", scene.arm.status().message.c_str());
+  check(scene.arm.reports("rejected"), "%s", scene.arm.status().message.c_str());
   check_stream(scene.arm);
 }
 

@@ -13,7 +13,7 @@
 #include "tests/support/scratch.h"
 
 using namespace sidestep;
-using test::agreed;
+using test::agreeing_cycles;
 using test::logs_in;
 using test::Process;
 using test::text_of;
@@ -39,7 +39,7 @@ std::vector<std::string> controller(const std::string& config) {
 int replay_request(const std::string& name) {
   const std::vector<std::string> logs = logs_in(log_folder(name), "request");
   assert_int_equal(logs.size(), 1);
-  return agreed(logs.front());
+  return agreeing_cycles(logs.front());
 }
 
 void a_log_of_an_iiwa_replays_bit_for_bit(void**) {

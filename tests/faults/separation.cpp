@@ -102,7 +102,7 @@ void an_obstacle_grows_by_its_uncertainty_and_with_its_age(void**) {
   loop.run(0.1);
   const double truth_m = true_clearance_m(loop), seen_m = loop.last.report.clearance_m;
   check_near(truth_m - seen_m, 0.02 + 0.5 * 4.0 * 0.05 * 0.05, 0.02);
-  loop.obstacles_speak = false;
+  loop.sends_obstacles = false;
   loop.run(0.05);
   const double later_m = loop.last.report.clearance_m;
   check_near(seen_m - later_m, 0.5 * 4.0 * (0.1 * 0.1 - 0.05 * 0.05), 0.02);

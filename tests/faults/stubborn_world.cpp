@@ -84,7 +84,7 @@ void in_contact_at_the_start_the_distance_only_grows(void**) {
     const Capsule link = transformed(poses, shape);
     const Vector3 aside = (link.radius_m + 0.03) * random.direction();
     loop.add_sphere(0.5 * (link.start + link.end) + aside, Vector3::Zero(), 0.05);
-    loop.target_speaks = true;
+    loop.sends_target = true;
     assert_true(loop.run_until(Mode::kHold, 1.0));
     const double start_m = loop.last.report.clearance_m;
     if (start_m > 0.0) continue;

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "firmware/control/message_order.h"
+#include "firmware/control/validation.h"
 
 namespace sidestep::fuzz {
 

@@ -24,7 +24,7 @@ struct ForesightLoop {
   ForesightLoop(const Vector3& target_m, bool enabled) : loop(test::lwa3_model("sidestep"), test::home_rad()) {
     loop.model.settings.foresight.enabled = enabled;
     loop.target.position_m = target_m;
-    loop.target_speaks = true;
+    loop.sends_target = true;
     if (enabled) foresight = std::make_unique<Foresight>(loop.model);
   }
 

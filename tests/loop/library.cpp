@@ -53,7 +53,7 @@ struct Loop {
 void the_library_commands_the_same_as_step(void**) {
   Loop loop(Controller::Foresight::kOff);
   test::ClosedLoop same = test::at_home("sidestep");
-  same.target_speaks = true;
+  same.sends_target = true;
   same.add_sphere({0.6, 0.6, 0.6}, {0, 0, 0}).id = 0;
   for (int k = 0; k < 300; ++k) {
     loop.cycle();

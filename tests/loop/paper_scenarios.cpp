@@ -47,7 +47,7 @@ Figures simulate(const Scenario& scenario, const PaperGains& gains) {
   check(loop.run_until(Mode::kHold, 1.0), "%s", loop.last.report.message);
   loop.target.position_m = scenario.target_m;
   loop.target.velocity_mps = scenario.target_mps;
-  loop.target_speaks = true;
+  loop.sends_target = true;
   if (scenario.has_obstacles) {
     loop.add_sphere(Vector3(0.3, 0.2, 0.8), Vector3(0.2, 0, 0));
     loop.add_sphere(Vector3(0.1, 0.1, 0.8), Vector3(0, 0.2, 0));
@@ -61,7 +61,7 @@ Figures simulate(const Scenario& scenario, const PaperGains& gains) {
     if (cycle == std::lround(scenario.error_at_s * 100)) figures.error_m = loop.last.report.target_distance_m;
     figures.fastest_radps = std::max(figures.fastest_radps, loop.arm.velocity_radps.cwiseAbs().maxCoeff());
   }
-  check(loop.commands.complaint().empty(), "%s: %s", scenario.name, loop.commands.complaint().c_str());
+  check(loop.commands.violation().empty(), "%s: %s", scenario.name, loop.commands.violation().c_str());
   return figures;
 }
 

@@ -16,7 +16,7 @@ std::vector<sim::Obstacle> solids(const ClosedLoop& loop) {
   std::vector<sim::Obstacle> solids;
   const ObstacleView all{loop.obstacles.get(), 0.0, 0.0, &loop.model.surroundings};
   for (int i = 0; i < all.count(); ++i) {
-    const test::PlacedSolid placed = test::placed_solid(all.at(i));
+    const test::SolidAtPose placed = test::solid_at_pose(all.at(i));
     sim::Obstacle& obstacle = solids.emplace_back();
     obstacle.solid = placed.solid;
     obstacle.motion.position_m = placed.base_from_solid.translation();
@@ -126,7 +126,7 @@ void a_table_in_the_configuration_is_never_touched(void**) {
   model.surroundings = {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))};
   ClosedLoop loop(model, test::home_rad());
   loop.target.position_m = Vector3(-0.7, 0.1, 0.34);  // in the table
-  loop.target_speaks = true;
+  loop.sends_target = true;
   const Figures figures = simulate(loop, 6.0, [](double) {});
   print_message("table: %.1f mm\n", figures.least_m * 1e3);
   check(figures.least_m > 0.0, "%g m", figures.least_m);
@@ -139,10 +139,10 @@ void surroundings_do_not_replace_the_first_obstacle_set(void**) {
   model.surroundings = {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))};
   model.surroundings[0].id = -2;
   ClosedLoop loop(model, test::home_rad());
-  loop.target_speaks = true;
-  loop.obstacles_speak = false;
+  loop.sends_target = true;
+  loop.sends_obstacles = false;
   assert_false(loop.run_until(Mode::kTrack, 1.5));
-  assert_true(loop.says("obstacle"));
+  assert_true(loop.reports("obstacle"));
   assert_int_equal(loop.last.report.nearest_obstacle, -2);
   check(loop.last.report.clearance_m > 0.0 && loop.last.report.clearance_m < 0.2, "%g m", loop.last.report.clearance_m);
 }

@@ -28,9 +28,9 @@ void ClosedLoop::Sent<Message>::send(const Message& now, double now_s) {
 Inputs ClosedLoop::receive() {
   ++periods_;
   arm.utime = static_cast<int64_t>(std::llround(now_s() * 1e6)) + arm_clock_offset_us;
-  if (arm_speaks) sent_arm_.send(arm, now_s());
-  if (target_speaks) sent_target_.send(target, now_s());
-  if (obstacles_speak) sent_obstacles_.send(*obstacles, now_s());
+  if (sends_arm_state) sent_arm_.send(arm, now_s());
+  if (sends_target) sent_target_.send(target, now_s());
+  if (sends_obstacles) sent_obstacles_.send(*obstacles, now_s());
   return {sent_arm_.latest, sent_target_.latest, sent_obstacles_.latest, skipped, stop};
 }
 
@@ -91,7 +91,7 @@ ClosedLoop at_home(const std::string& law) {
 
 ClosedLoop tracking(const std::string& law) {
   ClosedLoop loop = at_home(law);
-  loop.target_speaks = true;
+  loop.sends_target = true;
   check(loop.run_until(Mode::kTrack, 1.0), "%s", loop.last.report.message);
   loop.run(0.3);
   check(loop.mode() == Mode::kTrack && loop.speed_radps() > 0.05, "%s at %g rad/s", loop.last.report.message,
@@ -100,7 +100,7 @@ ClosedLoop tracking(const std::string& law) {
 }
 
 void check_stream(const ClosedLoop& loop) {
-  check(loop.commands.complaint().empty(), "%s", loop.commands.complaint().c_str());
+  check(loop.commands.violation().empty(), "%s", loop.commands.violation().c_str());
 }
 
 }  // namespace sidestep::test

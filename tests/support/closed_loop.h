@@ -25,7 +25,7 @@ class ClosedLoop {
   ArmState arm;  ///< present state; follows the commands, rests without them
   Target target;
   std::unique_ptr<ObstacleSet> obstacles;
-  bool arm_speaks = true, target_speaks = false, obstacles_speak = true;  ///< which messages are sent
+  bool sends_arm_state = true, sends_target = false, sends_obstacles = true;  ///< which messages are sent
   bool stop = false;
   int skipped = 0;
   int64_t arm_clock_offset_us = 0;
@@ -42,7 +42,9 @@ class ClosedLoop {
   double now_s() const { return static_cast<double>(periods_) * model.settings.period_s(); }
   Mode mode() const { return last.report.mode; }
   /// Whether the report's message contains the text.
-  bool says(const std::string& text) const { return std::string(last.report.message).find(text) != std::string::npos; }
+  bool reports(const std::string& text) const {
+    return std::string(last.report.message).find(text) != std::string::npos;
+  }
   double speed_radps() const { return arm.velocity_radps.norm(); }
 
   /// Adds a sphere and returns it.

@@ -46,7 +46,7 @@ void CommandCheck::feed(const JointVector& position_rad, const JointVector& velo
     if (std::abs(rate - rate_last) > dv_max + kRounding / period_s_)
       report("position's rate changes by", i, rate - rate_last, dv_max);
     const double expected = p_last + v * period_s_;
-    if (!catching_up_ && std::abs(p - expected) > kRounding)
+    if (!position_correction_allowed_ && std::abs(p - expected) > kRounding)
       report("position is not the one that the velocity leads to:", i, p, expected);
     const double out = outside(p, limits_.lower_rad[i], limits_.upper_rad[i]);
     const double out_last = outside(p_last, limits_.lower_rad[i], limits_.upper_rad[i]);

@@ -21,13 +21,13 @@ class CommandCheck {
 
   /// From now on positions need not follow from the velocities. If an external force displaces the arm, the controller
   /// corrects the commanded positions towards the measured ones. All other checks stay.
-  void grant_catching_up() { catching_up_ = true; }
+  void allow_position_correction() { position_correction_allowed_ = true; }
 
   /// Ends the stream. The last velocity must be zero.
   void end();
 
   /// The first violation with the number of the command; empty if there is none.
-  const std::string& complaint() const { return violation_; }
+  const std::string& violation() const { return violation_; }
   int64_t fed() const { return fed_; }
 
  private:
@@ -36,7 +36,7 @@ class CommandCheck {
   JointLimits limits_;
   double period_s_;
   JointVector position_rad_, velocity_radps_, rate_radps_;  ///< of the last command; rate_radps_: position difference
-  bool catching_up_ = false;
+  bool position_correction_allowed_ = false;
   int64_t fed_ = 0;
   std::string violation_;
 };

@@ -45,12 +45,12 @@ IiwaDriver::IiwaDriver(const JointLimits& limits, const JointVector& start_rad, 
 }
 
 void IiwaDriver::on_command(const lcm::ReceiveBuffer*, const std::string&, const drake::lcmt_iiwa_command* message) {
-  if (off_ || !gave_up.empty()) return;
+  if (off_ || !stop_reason.empty()) return;
   const Clock::time_point now = Clock::now();
-  if (statuses_sent_ == 0 || now - started_ < kGuard) gave_up = "a command within the guard time";
-  if (message->num_joints != held_rad_.size()) gave_up = "a command for another number of joints";
-  if (message->num_torques != 0) gave_up = "torques in position mode";
-  if (!gave_up.empty()) return;
+  if (statuses_sent_ == 0 || now - started_ < kGuard) stop_reason = "a command within the guard time";
+  if (message->num_joints != held_rad_.size()) stop_reason = "a command for another number of joints";
+  if (message->num_torques != 0) stop_reason = "torques in position mode";
+  if (!stop_reason.empty()) return;
   // A new stream starts at the held position, at rest.
   if (now - commanded_ > kEndOfStream) commands.begin(held_rad_, JointVector::Zero(held_rad_.size()));
   commanded_ = now;
@@ -73,7 +73,7 @@ void IiwaDriver::tick() {
   const int64_t utime = std::chrono::duration_cast<std::chrono::microseconds>(next_.time_since_epoch()).count();
   peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
   peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(-0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));
-  if (!off_ && gave_up.empty()) send_status();
+  if (!off_ && stop_reason.empty()) send_status();
   next_ = std::max(next_ + kPeriod, Clock::now() - kPeriod);
   peer.listen(std::chrono::duration<double>(next_ - Clock::now()).count());
   while (lcm_.handleTimeout(0) > 0) {

@@ -23,7 +23,7 @@ class IiwaDriver {
   Vector3 target_m;
   LcmPeer peer;
   CommandCheck commands;
-  std::string gave_up;  ///< why the driver has stopped; empty while it runs
+  std::string stop_reason;  ///< why the driver has stopped; empty while it runs
 
   void run(double duration_s);
   /// Runs until the controller's last status has this mode, for at most limit_s. Returns whether it has.

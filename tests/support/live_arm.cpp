@@ -64,10 +64,10 @@ void LiveArm::tick() {
   peer.drain();
   follow();
   if (ticks_without_command_++ >= kTicksToWait) stop_by_itself();
-  if (target_speaks) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
-  if (obstacles_speak)
+  if (sends_target) peer.send("TARGET", target_message(utime, target_m, Vector3::Zero()));
+  if (sends_obstacles)
     peer.send("OBSTACLES", obstacles_message(utime, {sphere(5, Vector3(0.6, 0.6, 0.6), 0.05, Vector3::Zero())}));
-  if (arm_speaks) peer.send("ARM_STATE", arm_state_message(utime, position_rad_, velocity_radps_));
+  if (sends_arm_state) peer.send("ARM_STATE", arm_state_message(utime, position_rad_, velocity_radps_));
   next_ = std::max(next_ + kPeriod, Clock::now() - kPeriod);
   peer.listen(std::chrono::duration<double>(next_ - Clock::now()).count());
   follow();
@@ -87,7 +87,7 @@ bool LiveArm::run_until(int8_t mode, double limit_s) {
   return true;
 }
 
-bool LiveArm::says(const char* text) const {
+bool LiveArm::reports(const char* text) const {
   return status().message.find(text) != std::string::npos;
 }
 

@@ -15,7 +15,7 @@ class LiveArm {
   /// period_s: of the commands.
   LiveArm(const JointLimits& limits, const JointVector& start_rad, double period_s = 0.01);
 
-  bool arm_speaks = true, target_speaks = true, obstacles_speak = true;  ///< which messages are sent
+  bool sends_arm_state = true, sends_target = true, sends_obstacles = true;  ///< which messages are sent
   Vector3 target_m = Vector3::Zero();
   int64_t clock_offset_us = 0;  ///< of all utimes
   LcmPeer peer;
@@ -27,7 +27,7 @@ class LiveArm {
 
   const controller_status_t& status() const { return peer.statuses.back(); }
   /// Whether the last status message contains the text.
-  bool says(const char* text) const;
+  bool reports(const char* text) const;
   double speed_radps() const;  ///< of the last command
   /// Number of commands that the network dropped; the check continues after them.
   int64_t lost() const { return lost_; }

@@ -21,7 +21,7 @@ void check_stream(const LiveArm& arm) {
   const auto received = static_cast<int64_t>(arm.peer.commands.size());
   check(20 * arm.lost() <= received, "%ld of %ld commands were lost: too many for a check", arm.lost(),
         arm.lost() + received);
-  check(arm.commands.complaint().empty(), "%s", arm.commands.complaint().c_str());
+  check(arm.commands.violation().empty(), "%s", arm.commands.violation().c_str());
 }
 
 LiveScene::LiveScene(const std::string& law) : controller(start_controller(law)), arm(lwa3().limits, home_rad()) {

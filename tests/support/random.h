@@ -37,7 +37,7 @@ class Random {
     return v;
   }
   /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi.
-  JointVector poses(const Arm& arm, double share = 1.0) {
+  JointVector configuration(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {
       const double lower = std::max(arm.limits.lower_rad[i], -M_PI), upper = std::min(arm.limits.upper_rad[i], M_PI);

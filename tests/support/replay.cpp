@@ -31,7 +31,7 @@ Replay replay(const std::string& log, const std::vector<std::string>& more) {
   return {code, process.output()};
 }
 
-int agreed(const std::string& log) {
+int agreeing_cycles(const std::string& log) {
   const Replay result = replay(log);
   check(result.code == 0 && result.output.find("all agree bit for bit") != std::string::npos, "code %d: %s",
         result.code, result.output.c_str());

@@ -14,7 +14,7 @@ struct Replay {
 Replay replay(const std::string& log, const std::vector<std::string>& more = {});
 
 /// Replays a log and returns the number of cycles; fails the test unless all agree bit for bit.
-int agreed(const std::string& log);
+int agreeing_cycles(const std::string& log);
 
 /// The complete logs in a folder that were written for this reason, the oldest first. A pause of the machine is also a
 /// fault and may add a log that the test did not cause.

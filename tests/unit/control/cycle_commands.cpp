@@ -17,7 +17,7 @@ namespace {
 const char* const kLaws[] = {"paper", "sidestep"};
 
 void check_stream(const ClosedLoop& loop, const char* law, unsigned seed) {
-  check(loop.commands.complaint().empty(), "%s, seed %u: %s", law, seed, loop.commands.complaint().c_str());
+  check(loop.commands.violation().empty(), "%s, seed %u: %s", law, seed, loop.commands.violation().c_str());
 }
 
 /// Changes the inputs at random; most cycles stay unchanged.
@@ -29,9 +29,9 @@ void disturb(ClosedLoop& loop, Random& random) {
     target.velocity_mps = random.chance(0.5) ? Vector3(random.inside(-0.5, 0.5)) : Vector3(Vector3::Zero());
   if (random.chance(0.01)) target.tracks_orientation = !target.tracks_orientation;
   if (random.chance(0.01)) target.orientation = random.turn();
-  if (random.chance(0.02)) loop.target_speaks = random.chance(0.8);
-  if (random.chance(0.02)) loop.obstacles_speak = random.chance(0.8);
-  if (random.chance(0.02)) loop.arm_speaks = random.chance(0.7);
+  if (random.chance(0.02)) loop.sends_target = random.chance(0.8);
+  if (random.chance(0.02)) loop.sends_obstacles = random.chance(0.8);
+  if (random.chance(0.02)) loop.sends_arm_state = random.chance(0.7);
   if (random.chance(0.02)) loop.stop = random.chance(0.3);
   loop.skipped = random.chance(0.02) ? random.index(5) : 0;
   if (random.chance(0.02)) {
@@ -47,7 +47,7 @@ void the_arm_can_follow_every_command_under_random_disturbances(void**) {
     const Model model = lwa3_model(law);
     for (unsigned seed = 1; seed <= 12; ++seed) {
       Random random(seed);
-      ClosedLoop loop(model, random.poses(model.arm, 0.9));
+      ClosedLoop loop(model, random.configuration(model.arm, 0.9));
       int64_t modes[5] = {};
       for (int cycle = 0; cycle < 1500; ++cycle) {
         if (cycle > 60) disturb(loop, random);
@@ -70,10 +70,10 @@ void one_wrong_arm_state_does_not_make_the_commands_jump(void**) {
       Random random(seed);
       ClosedLoop loop(lwa3_model(law), home_rad());
       loop.target.position_m = Vector3(-0.1, 0.3, 0.8);
-      loop.target_speaks = true;
+      loop.sends_target = true;
       loop.run(0.6 + 0.01 * random.index(30));
       const JointVector truth_rad = loop.arm.position_rad;
-      loop.arm.position_rad = random.poses(loop.model.arm);
+      loop.arm.position_rad = random.configuration(loop.model.arm);
       loop.cycle();
       loop.arm.position_rad = truth_rad;
       loop.run(2.0);
@@ -139,7 +139,7 @@ void commands_stay_near_a_blocked_arm(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop(lwa3_model(law), home_rad());
     loop.target.position_m = Vector3(0.3, 0.4, 0.5);
-    loop.target_speaks = true;
+    loop.sends_target = true;
     double farthest_rad = 0.0, fastest_rad = 0.0;
     JointVector last_rad;
     for (int cycle = 0; cycle < 600; ++cycle) {
@@ -192,18 +192,18 @@ void commands_catch_up_with_a_pushed_arm_within_the_joint_limits(void**) {
     for (const bool while_braking : {false, true}) {
       for (const double push_radps : {0.4, 1.0, 1.9}) {
         ClosedLoop loop(lwa3_model(law), home_rad());
-        loop.commands.grant_catching_up();
+        loop.commands.allow_position_correction();
         loop.run(1.0);
         JointVector moved_rad = loop.arm.position_rad;
-        loop.obstacles_speak = !while_braking;
+        loop.sends_obstacles = !while_braking;
         loop.run(0.2);
         for (int cycle = 0; cycle < 300; ++cycle) {
-          if (cycle >= 150) loop.obstacles_speak = true;
+          if (cycle >= 150) loop.sends_obstacles = true;
           if (cycle * 0.01 * push_radps < 0.8) moved_rad[0] += 0.01 * push_radps;
           loop.arm.position_rad = moved_rad;
           loop.arm.velocity_radps.setZero();
           loop.cycle();
-          check(loop.mode() == (loop.obstacles_speak ? Mode::kHold : Mode::kBrake), "%s", loop.last.report.message);
+          check(loop.mode() == (loop.sends_obstacles ? Mode::kHold : Mode::kBrake), "%s", loop.last.report.message);
         }
         check_stream(loop, law, 0);
         const double behind_rad = std::abs(moved_rad[0] - loop.last.command.position_rad[0]);

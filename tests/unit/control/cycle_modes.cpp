@@ -16,14 +16,14 @@ const char* const kLaws[] = {"paper", "sidestep"};
 
 void waits_for_half_a_second_of_arm_state(void**) {
   ClosedLoop loop = at_home("paper");
-  loop.target_speaks = true;
-  loop.arm_speaks = false;
+  loop.sends_target = true;
+  loop.sends_arm_state = false;
   loop.run(1.0);
-  assert_true(loop.mode() == Mode::kWait && loop.says("first arm state"));
+  assert_true(loop.mode() == Mode::kWait && loop.reports("first arm state"));
   assert_int_equal(loop.last.command.position_rad.size(), 0);
-  loop.arm_speaks = true;
+  loop.sends_arm_state = true;
   loop.run(0.5);
-  assert_true(loop.mode() == Mode::kWait && loop.says("consistent"));
+  assert_true(loop.mode() == Mode::kWait && loop.reports("consistent"));
   assert_int_equal(loop.commands.fed(), 0);
   loop.run(0.02);
   assert_true(loop.mode() == Mode::kTrack || loop.mode() == Mode::kHold);
@@ -41,20 +41,20 @@ void a_jump_while_waiting_restarts_the_wait(void**) {
 
 void waits_for_the_first_obstacles_unless_configured_otherwise(void**) {
   ClosedLoop loop = at_home("paper");
-  loop.target_speaks = true;
-  loop.obstacles_speak = false;
+  loop.sends_target = true;
+  loop.sends_obstacles = false;
   loop.run(1.0);
-  assert_true(loop.mode() == Mode::kWait && loop.says("obstacle"));
+  assert_true(loop.mode() == Mode::kWait && loop.reports("obstacle"));
   assert_true(std::isnan(loop.last.report.clearance_m));
-  loop.obstacles_speak = true;
+  loop.sends_obstacles = true;
   loop.run(0.02);
   assert_true(loop.mode() == Mode::kTrack);
   check_near(loop.last.report.clearance_m, HUGE_VAL, 0);
 
   ClosedLoop not_waiting = at_home("paper");
   not_waiting.model.settings.wait_for_obstacles = false;
-  not_waiting.target_speaks = true;
-  not_waiting.obstacles_speak = false;
+  not_waiting.sends_target = true;
+  not_waiting.sends_obstacles = false;
   not_waiting.run(0.6);
   assert_true(not_waiting.mode() == Mode::kTrack);
 }
@@ -63,10 +63,10 @@ void holds_without_a_target_and_tracks_with_one(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = at_home(law);
     loop.run(1.0);
-    assert_true(loop.mode() == Mode::kHold && loop.says("no target"));
+    assert_true(loop.mode() == Mode::kHold && loop.reports("no target"));
     check_near(loop.arm.position_rad, home_rad(), 0);
     assert_true(std::isnan(loop.last.report.target_distance_m));
-    loop.target_speaks = true;
+    loop.sends_target = true;
     loop.run(10.0);
     assert_true(loop.mode() == Mode::kTrack);
     check(loop.last.report.target_distance_m < 1e-3, "%s: %g m left", law, loop.last.report.target_distance_m);
@@ -81,7 +81,7 @@ void a_request_to_stop_brakes_to_rest(void**) {
     ClosedLoop loop = tracking(law);
     loop.stop = true;
     loop.cycle();
-    assert_true(loop.mode() == Mode::kBrake && loop.says("stop"));
+    assert_true(loop.mode() == Mode::kBrake && loop.reports("stop"));
     double speed = loop.speed_radps();
     for (int i = 0; i < 25; ++i) {
       loop.cycle();
@@ -106,7 +106,7 @@ void one_late_cycle_is_reported_and_three_in_a_row_brake(void**) {
   loop.cycle();
   assert_true(loop.mode() == Mode::kTrack);
   loop.cycle();
-  assert_true(loop.mode() == Mode::kBrake && loop.says("skipped"));
+  assert_true(loop.mode() == Mode::kBrake && loop.reports("skipped"));
   loop.skipped = 0;
   loop.cycle();
   assert_true(loop.mode() == Mode::kTrack);
@@ -137,17 +137,17 @@ void planned_velocity_is_discarded_while_holding(void**) {
   ClosedLoop loop = tracking("paper");
   loop.model.settings.paper.tool_velocity = ToolVelocity::kPlanned;
   loop.run(0.3);
-  assert_true(loop.state.planning && loop.state.planned_mps.norm() > 0.02);
-  loop.target_speaks = false;
+  assert_true(loop.state.planned_mps && loop.state.planned_mps->norm() > 0.02);
+  loop.sends_target = false;
   loop.run(0.6);
-  assert_false(loop.state.planning);
+  assert_false(loop.state.planned_mps.has_value());
   check_near(loop.speed_radps(), 0.0, 0);
-  loop.target_speaks = true;
+  loop.sends_target = true;
   loop.cycle();
-  assert_true(loop.mode() == Mode::kTrack && loop.state.planning);
+  assert_true(loop.mode() == Mode::kTrack && loop.state.planned_mps);
   const Vector3 force =
       attraction(loop.model.settings.paper, loop.target, loop.last.report.tool_position_m, Vector3(0, 0, 0));
-  check_near(loop.state.planned_mps, Vector3(force * loop.model.settings.period_s()), 1e-12);
+  check_near(*loop.state.planned_mps, Vector3(force * loop.model.settings.period_s()), 1e-12);
 }
 
 }  // namespace

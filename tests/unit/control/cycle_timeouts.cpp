@@ -18,14 +18,14 @@ const char* const kLaws[] = {"paper", "sidestep"};
 void an_old_target_leads_to_hold_and_a_new_one_to_track(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
-    loop.target_speaks = false;
+    loop.sends_target = false;
     loop.run(0.25);
     assert_true(loop.mode() == Mode::kTrack);
     loop.run(0.02);
-    assert_true(loop.mode() == Mode::kHold && loop.says("target is too old"));
+    assert_true(loop.mode() == Mode::kHold && loop.reports("target is too old"));
     loop.run(0.5);
     check_near(loop.speed_radps(), 0.0, 0);
-    loop.target_speaks = true;
+    loop.sends_target = true;
     loop.run(0.1);
     assert_true(loop.mode() == Mode::kTrack);
     assert_true(loop.speed_radps() > 0);
@@ -38,17 +38,17 @@ void old_obstacles_brake_and_grow(void**) {
     ClosedLoop loop = tracking(law);
     loop.add_sphere(Vector3(1.5, 0, 0.5), Vector3(0, 0, 0));
     loop.run(0.1);
-    loop.obstacles_speak = false;
+    loop.sends_obstacles = false;
     loop.run(0.1);
     assert_true(loop.mode() == Mode::kTrack);
     const double before_m = loop.last.report.clearance_m;
     loop.run(0.02);
-    assert_true(loop.mode() == Mode::kBrake && loop.says("obstacles are too old"));
+    assert_true(loop.mode() == Mode::kBrake && loop.reports("obstacles are too old"));
     loop.run(0.5);
     check_near(loop.speed_radps(), 0.0, 0);
     const double shrunk_m = before_m - loop.last.report.clearance_m;
     check(shrunk_m > 0.6 * loop.model.settings.obstacle_speed_bound_mps - 0.1, "the obstacle grew by %g m", shrunk_m);
-    loop.obstacles_speak = true;
+    loop.sends_obstacles = true;
     loop.run(0.1);
     assert_true(loop.mode() == Mode::kTrack);
     check_stream(loop);
@@ -60,24 +60,24 @@ void the_arm_does_not_start_on_old_obstacles(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = test::at_home(law);
     loop.add_sphere(Vector3(-0.3, 0.1, 0.8), Vector3(0, 0, 0));
-    loop.arm_speaks = false;
+    loop.sends_arm_state = false;
     loop.run(0.1);
-    loop.obstacles_speak = false;
+    loop.sends_obstacles = false;
     const auto stands_still = [&](Mode mode) {
       const JointVector before_rad = loop.arm.position_rad;
-      loop.arm_speaks = true;
+      loop.sends_arm_state = true;
       for (int cycle = 0; cycle < 200; ++cycle) {
         loop.cycle();
         check(loop.mode() == mode && !loop.last.commanding, "%s: mode %d", law, static_cast<int>(loop.mode()));
       }
-      assert_true(loop.says("obstacles are too old"));
+      assert_true(loop.reports("obstacles are too old"));
       check_near(loop.arm.position_rad, before_rad, 0);
     };
     stands_still(Mode::kWait);
-    loop.obstacles_speak = true;
+    loop.sends_obstacles = true;
     assert_true(loop.run_until(Mode::kHold, 0.1));
     loop.run(0.5);
-    loop.obstacles_speak = loop.arm_speaks = false;
+    loop.sends_obstacles = loop.sends_arm_state = false;
     assert_true(loop.run_until(Mode::kFault, 0.5));
     loop.run(1.0);
     stands_still(Mode::kFault);
@@ -101,22 +101,22 @@ void obstacles_received_in_the_future_are_not_farther_away(void**) {
 void a_short_gap_of_arm_states_brakes_and_a_long_one_is_a_fault(void**) {
   for (const char* law : kLaws) {
     ClosedLoop loop = tracking(law);
-    loop.arm_speaks = false;
+    loop.sends_arm_state = false;
     loop.run(0.03);
     assert_true(loop.mode() == Mode::kTrack);
     loop.run(0.01);
-    assert_true(loop.mode() == Mode::kBrake && loop.says("arm state is too old"));
-    loop.arm_speaks = true;
+    assert_true(loop.mode() == Mode::kBrake && loop.reports("arm state is too old"));
+    loop.sends_arm_state = true;
     loop.run(0.02);
     assert_true(loop.mode() == Mode::kTrack);
-    loop.arm_speaks = false;
+    loop.sends_arm_state = false;
     loop.run(0.11);
     assert_true(loop.mode() == Mode::kFault && loop.last.report.fault == Fault::kArmStateLost);
     loop.run(1.0);
     assert_false(loop.last.commanding);
-    loop.arm_speaks = true;
+    loop.sends_arm_state = true;
     loop.run(0.49);
-    assert_true(loop.mode() == Mode::kFault && loop.says("consistent"));
+    assert_true(loop.mode() == Mode::kFault && loop.reports("consistent"));
     loop.run(0.04);
     assert_true(loop.mode() == Mode::kTrack && loop.last.report.fault == Fault::kNone);
     check_stream(loop);
@@ -148,13 +148,13 @@ void an_arm_whose_clock_runs_ahead_may_not_jump(void**) {
     loop.arm_clock_offset_us += 5'000'000;
     loop.arm.position_rad[0] += 0.5;
     loop.cycle();
-    check(loop.mode() == Mode::kFault && loop.says("jumped"), "%s: %s", law, loop.last.report.message);
+    check(loop.mode() == Mode::kFault && loop.reports("jumped"), "%s: %s", law, loop.last.report.message);
 
     test::Random random(1);
     ClosedLoop jumping = test::at_home(law);
-    jumping.target_speaks = true;
+    jumping.sends_target = true;
     for (int cycle = 0; cycle < 300; ++cycle) {
-      jumping.arm.position_rad = random.poses(jumping.model.arm, 0.9);
+      jumping.arm.position_rad = random.configuration(jumping.model.arm, 0.9);
       jumping.arm_clock_offset_us += 3'000'000;
       jumping.cycle();
       check(jumping.mode() == Mode::kWait && !jumping.last.commanding, "%s: %s", law, jumping.last.report.message);
@@ -174,10 +174,10 @@ void a_silence_of_the_arm_counts_where_its_states_are_the_clock(void**) {
       ClosedLoop loop = tracking(law);
       Inputs inputs = loop.receive();
       ArmState arm = *inputs.arm.message;
-      const double now_s = loop.state.arm_received_s + each.silence_s;
-      arm.utime = loop.state.arm_utime + std::llround(each.silence_s * 1e6);
+      const double now_s = loop.state.arm_monitor.received_s + each.silence_s;
+      arm.utime = loop.state.arm_monitor.utime + std::llround(each.silence_s * 1e6);
       arm.position_rad[0] += each.moved_rad;
-      inputs.arm = {&arm, now_s, loop.state.arm_count + 1};
+      inputs.arm = {&arm, now_s, loop.state.arm_monitor.count + 1};
       inputs.target.received_s = inputs.obstacles.received_s = now_s;
       const Result result = step(loop.model, loop.state, inputs, now_s);
       check(result.report.mode == each.mode, "%s, %g s: %s", law, each.silence_s, result.report.message);
@@ -204,9 +204,10 @@ void after_a_pause_of_the_controller_commands_start_from_the_arms_position(void*
       Inputs inputs = loop.receive();
       ArmState arm = *inputs.arm.message;
       arm.velocity_radps.setZero();
-      arm.utime = loop.state.arm_utime + std::llround(each.arm_received_s * 1e6);
-      const double last_s = loop.state.cycle_s, now_s = last_s + pause_s;
-      if (each.arm_received_s > 0.0) inputs.arm = {&arm, last_s + each.arm_received_s, loop.state.arm_count + 5};
+      arm.utime = loop.state.arm_monitor.utime + std::llround(each.arm_received_s * 1e6);
+      const double last_s = loop.state.arm_monitor.cycle_s, now_s = last_s + pause_s;
+      if (each.arm_received_s > 0.0)
+        inputs.arm = {&arm, last_s + each.arm_received_s, loop.state.arm_monitor.count + 5};
       inputs.target.received_s = inputs.obstacles.received_s = now_s;
       inputs.skipped_cycles = 7;
       const Result result = step(loop.model, loop.state, inputs, now_s);
@@ -253,7 +254,7 @@ void target_and_obstacles_are_extrapolated_to_the_current_cycle(void**) {
       loop.add_sphere(Vector3(-0.1, 0.4, 0.9), Vector3(0, -0.1, 0));
       std::vector<double> seen;
       for (int i = 0; i < 100; ++i) {
-        loop.target_speaks = loop.obstacles_speak = i % every == 0;
+        loop.sends_target = loop.sends_obstacles = i % every == 0;
         loop.cycle();
         for (const double velocity : loop.last.command.velocity_radps) seen.push_back(velocity);
         seen.push_back(loop.last.report.clearance_m);

@@ -17,7 +17,7 @@ Guide random_guide(Random& random, int knots) {
   double time_s = 1.0;
   for (int k = 0; k < knots; ++k) {
     guide.time_s[static_cast<size_t>(k)] = time_s;
-    guide.position_rad[static_cast<size_t>(k)] = random.poses(lwa3());
+    guide.position_rad[static_cast<size_t>(k)] = random.configuration(lwa3());
     time_s += random.uniform(0.3, 2.0);
   }
   return guide;
@@ -56,7 +56,7 @@ void after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there(void**) {
   const JointVector q_rad = test::home_rad(), at_rest = JointVector::Zero(7);
   Target target;
   target.position_m = poses.tool_position;
-  const Situation now{lwa3(), poses, tool_jacobian(poses, 3), q_rad, at_rest, target, ObstacleView{}, Clearance{}};
+  const LawInput now{lwa3(), poses, tool_jacobian(poses, 3), q_rad, at_rest, target, ObstacleView{}, Clearance{}};
   Guide guide = random_guide(random, 2);
   const double after_s = guide.end_s() + 1.0;
   const NominalCommand holding = guided_law(gains, now, guide, after_s);

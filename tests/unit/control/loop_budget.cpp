@@ -40,7 +40,7 @@ void add(Kind kind, Random& random, ClosedLoop& loop) {
 Times measure(const char* law, Kind kind, int obstacles, int cycles, bool with_orientation) {
   Random random(1);
   ClosedLoop loop(test::lwa3_model(law), test::home_rad());
-  loop.target_speaks = true;
+  loop.sends_target = true;
   loop.target.tracks_orientation = with_orientation;
   for (int i = 0; i < obstacles; ++i) add(kind, random, loop);
   std::vector<double> times;

@@ -117,24 +117,24 @@ void a_message_is_fresh_from_its_receipt_to_its_age_limit(void**) {
 }
 
 void only_newer_messages_are_accepted(void**) {
-  Order order;
+  MessageOrder order;
   assert_true(order.accept(1000, 1.000, 0.1));
   assert_false(order.accept(1000, 1.001, 0.1));
   assert_false(order.accept(999, 1.002, 0.1));
-  assert_false(Order(order).accept(1000, 2.000, 0.1));  // a frozen sender repeats its last message
+  assert_false(MessageOrder(order).accept(1000, 2.000, 0.1));  // a frozen sender repeats its last message
   assert_true(order.accept(1001, 1.003, 0.1));
   assert_true(order.accept(900000000, 1.004, 0.1));
 }
 
 void the_first_message_is_accepted_with_any_utime(void**) {
   for (const int64_t utime : {INT64_MIN, int64_t{-1}, int64_t{0}, INT64_MAX}) {
-    Order order;
+    MessageOrder order;
     check(order.accept(utime, 0.0, 0.1), "%ld", utime);
   }
 }
 
 void a_restarted_sender_is_accepted(void**) {
-  Order far_back;
+  MessageOrder far_back;
   assert_true(far_back.accept(5'000'000, 1.00, 0.1));
   assert_false(far_back.accept(4'950'000, 1.01, 0.1));  // 50 ms back: late, not restarted
   assert_false(far_back.accept(10, 1.02, 0.1));         // 5 s back: restarted or very late
@@ -143,7 +143,7 @@ void a_restarted_sender_is_accepted(void**) {
   assert_true(far_back.accept(40, 1.05, 0.1));
   assert_false(far_back.accept(35, 1.06, 0.1));
 
-  Order silence;
+  MessageOrder silence;
   assert_true(silence.accept(5'000'000, 1.00, 0.1));
   assert_false(silence.accept(4'990'000, 1.09, 0.1));
   assert_true(silence.accept(4'990'000, 1.11, 0.1));
@@ -151,7 +151,7 @@ void a_restarted_sender_is_accepted(void**) {
 
 /// Any number of such messages between newer ones is dropped, too.
 void a_message_that_is_very_late_is_dropped(void**) {
-  Order order;
+  MessageOrder order;
   for (int i = 0; i < 20; ++i) {
     assert_true(order.accept(5'000'000 + 10'000 * i, 1.00 + 0.01 * i, 0.1));
     assert_false(order.accept(4'000'000 + 10'000 * i, 1.001 + 0.01 * i, 0.1));
@@ -160,7 +160,7 @@ void a_message_that_is_very_late_is_dropped(void**) {
 }
 
 void one_message_from_the_far_future_does_not_lock_its_sender_out(void**) {
-  Order order;
+  MessageOrder order;
   assert_true(order.accept(1'000'000, 1.00, 0.1));
   assert_true(order.accept(INT64_MAX, 1.01, 0.1));
   assert_false(order.accept(1'020'000, 1.02, 0.1));
@@ -172,7 +172,7 @@ void one_message_from_the_far_future_does_not_lock_its_sender_out(void**) {
 
 /// Without this bound a sender that stamps in nanoseconds would appear to send seconds apart.
 void elapsed_time_follows_the_senders_clock_within_the_network_delay(void**) {
-  Order order;
+  MessageOrder order;
   assert_true(order.accept(1'000'000, 1.00, 0.1));
   check_near(order.elapsed_s(), 0.0, 0);
   assert_true(order.accept(1'020'000, 1.01, 0.1));
@@ -185,7 +185,7 @@ void elapsed_time_follows_the_senders_clock_within_the_network_delay(void**) {
 
 /// In lockstep the arm's utime is also the controller's clock.
 void old_messages_are_dropped_when_the_messages_are_the_clock(void**) {
-  Order order;
+  MessageOrder order;
   assert_true(order.accept(5'000'000, 5.00, 0.1));
   assert_true(order.accept(6'000'000, 6.00, 0.1));
   assert_false(order.accept(6'000'000, 6.00, 0.1));

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSpeedBound_mps = 2.0, kMemory_s = 0.3, kPeriod_s = 0.01;
 
 Obstacle ball(int32_t id, const Vector3& position_m) {
-  return {id, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
+  return {id, Shape::kSphere, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
 }
 
 /// A memory and a sender of one set per period.
@@ -29,7 +29,7 @@ struct Scene {
     now_s += elapsed_s;
     set->count = static_cast<int>(obstacles.size());
     std::copy(obstacles.begin(), obstacles.end(), set->obstacles.begin());
-    memory->complete(*set, elapsed_s, now_s);
+    memory->add_remembered(*set, elapsed_s, now_s);
     return set->count - static_cast<int>(obstacles.size());
   }
   const Obstacle& last() const { return set->obstacles[static_cast<size_t>(set->count - 1)]; }

@@ -38,8 +38,8 @@ double smallest_singular_value(const JointVector& q_rad, int rows) {
 
 /// A random configuration without damping by the law.
 JointVector regular_configuration(Random& random, int rows) {
-  JointVector q_rad = random.poses(lwa3());
-  while (smallest_singular_value(q_rad, rows) < kGains.sigma_0) q_rad = random.poses(lwa3());
+  JointVector q_rad = random.configuration(lwa3());
+  while (smallest_singular_value(q_rad, rows) < kGains.sigma_0) q_rad = random.configuration(lwa3());
   return q_rad;
 }
 
@@ -138,7 +138,7 @@ double largest_share_of_limit(const JointVector& q_rad) {
 void joints_near_their_limits_return_while_the_tool_stays(void**) {
   Random random(6);
   for (int trial = 0; trial < 20; ++trial) {
-    JointVector q_rad = 0.5 * random.poses(lwa3());
+    JointVector q_rad = 0.5 * random.configuration(lwa3());
     const int joint = 2 * random.index(4);  // rolls: the tool can stay while they turn
     q_rad[joint] = 0.99 * lwa3().limits.upper_rad[joint];
     if (smallest_singular_value(q_rad, 3) < 2.0 * kGains.sigma_0) continue;

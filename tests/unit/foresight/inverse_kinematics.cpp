@@ -15,12 +15,12 @@ void solutions_reach_the_target_within_the_limits_from_most_starts(void**) {
   Random random(4);
   int reached = 0, starts = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const LinkPoses goal = forward_kinematics(lwa3(), random.poses(lwa3(), 0.9));
+    const LinkPoses goal = forward_kinematics(lwa3(), random.configuration(lwa3(), 0.9));
     Target target;
     target.position_m = goal.tool_position;
     target.tracks_orientation = trial % 2;
     target.orientation = Quaternion(goal.tool_rotation);
-    JointVector q_rad = random.poses(lwa3(), 0.9);
+    JointVector q_rad = random.configuration(lwa3(), 0.9);
     ++starts;
     if (!solve_ik(lwa3(), target, q_rad)) continue;
     ++reached;

@@ -56,8 +56,8 @@ void add(Snapshot& snapshot, const Obstacle& obstacle) {
 /// A random configuration and target among three spheres and three boxes that move and turn, clear of the arm at first.
 std::unique_ptr<Snapshot> random_world(Random& random) {
   auto snapshot = empty_world();
-  snapshot->arm.position_rad = random.poses(lwa3(), 0.8);
-  snapshot->target.position_m = forward_kinematics(lwa3(), random.poses(lwa3(), 0.8)).tool_position;
+  snapshot->arm.position_rad = random.configuration(lwa3(), 0.8);
+  snapshot->target.position_m = forward_kinematics(lwa3(), random.configuration(lwa3(), 0.8)).tool_position;
   snapshot->target.velocity_mps = random.inside(-0.1, 0.1);
   while (snapshot->nearby.count < 6) {
     const Vector3 centre = random.inside(-1.0, 1.0);
@@ -133,7 +133,7 @@ void a_plan_keeps_the_limits_of_the_joints(void**) {
     const double dt_s = 1e-3;
     for (double at_s = guide.time_s[0]; at_s < guide.end_s(); at_s += dt_s) {
       const GuidePoint now = point_of(guide, at_s), next = point_of(guide, at_s + dt_s);
-      const JointVector acceleration_radps2 = (next.velocity_radps - now.velocity_radps) / dt_s;
+      const JointVector acceleration_radps2 = (next.stream.velocity_radps - now.velocity_radps) / dt_s;
       assert_true((now.position_rad.array() >= limits.lower_rad.array() - 1e-9).all());
       assert_true((now.position_rad.array() <= limits.upper_rad.array() + 1e-9).all());
       assert_true((now.velocity_radps.cwiseAbs().array() <= 0.9001 * limits.velocity_radps.array()).all());
@@ -160,7 +160,7 @@ void a_plan_to_an_orientation_ends_with_it(void**) {
   int found = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const auto snapshot = empty_world();
-    const LinkPoses goal = forward_kinematics(lwa3(), random.poses(lwa3(), 0.7));
+    const LinkPoses goal = forward_kinematics(lwa3(), random.configuration(lwa3(), 0.7));
     snapshot->target.position_m = goal.tool_position;
     snapshot->target.tracks_orientation = true;
     snapshot->target.orientation = Quaternion(goal.tool_rotation);

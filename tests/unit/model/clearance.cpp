@@ -122,7 +122,7 @@ void nearest_is_the_true_minimum_among_many(void**) {
   for (int trial = 0; trial < 300; ++trial) {
     const auto set = random_set(random, 1 + random.index(60), trial % 3 ? 1.5 : 8.0);
     const ObstacleView view{set.get(), random.uniform(0, 0.3), random.chance(0.3) ? random.uniform(0, 0.5) : 0.0};
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     const Reach reach{random.uniform(0, 0.5), random.uniform(0, 1)};
     const Clearance clearance = measure_clearance(lwa3(), poses, view, reach);
     double least = kInfinity, least_axis = kInfinity;
@@ -141,7 +141,7 @@ void the_near_list_holds_the_pairs_within_reach_and_the_nearest_of_too_many(void
   for (int trial = 0; trial < 200; ++trial) {
     const auto set = random_set(random, 1 + random.index(trial % 2 ? 300 : 20), 1.2);
     const ObstacleView view{set.get(), 0.05, 0.0};
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     const Reach reach{random.uniform(0.05, 0.5), random.uniform(0, 1)};
     const Clearance clearance = measure_clearance(lwa3(), poses, view, reach);
     std::vector<double> expected, actual;
@@ -166,7 +166,7 @@ void a_near_pair_has_the_values_of_the_general_computation(void**) {
   for (int trial = 0; trial < 600; ++trial) {
     const auto set = random_set(random, 1 + random.index(20), 1.0);
     const ObstacleView view{set.get(), 0.05, 0.01};
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     const Reach reach{0.4, 0.5};
     const std::vector<NearPair> all = all_pairs(poses, view, reach.horizon_s);
     for (const NearPair& pair : measure_clearance(lwa3(), poses, view, reach).near) {

@@ -14,7 +14,7 @@ namespace {
 void clearance_after_a_while_is_the_exact_one_to_the_extrapolated_obstacles(void**) {
   Random random(5);
   for (int trial = 0; trial < 500; ++trial) {
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     std::array<Obstacle, 5> obstacles;
     for (Obstacle& obstacle : obstacles) {
       const Vector3 centre = random.inside(-1, 1);

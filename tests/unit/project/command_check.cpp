@@ -28,7 +28,7 @@ struct Stream {
     watch.feed(position_rad, velocity_radps);
   }
   JointVector next_rad() const { return position_rad + kPeriod_s * velocity_radps; }
-  bool complains_of(const char* word) const { return watch.complaint().find(word) != std::string::npos; }
+  bool complains_of(const char* word) const { return watch.violation().find(word) != std::string::npos; }
 };
 
 JointVector with(JointVector vector, int joint, double change) {
@@ -40,7 +40,7 @@ void a_valid_stream_passes(void**) {
   Stream stream;
   while (stream.velocity_radps[0] > 0) stream.go((stream.velocity_radps - all(0.1)).cwiseMax(0.0));
   stream.watch.end();
-  assert_string_equal(stream.watch.complaint().c_str(), "");
+  assert_string_equal(stream.watch.violation().c_str(), "");
   assert_true(stream.watch.fed() > 50);
 }
 
@@ -49,41 +49,41 @@ void a_position_jump_is_detected(void**) {
     Stream stream;
     stream.watch.feed(with(stream.next_rad(), joint, 0.03), stream.velocity_radps);
     check(stream.complains_of("jumps") && stream.complains_of(("joint " + std::to_string(joint + 1)).c_str()), "%s",
-          stream.watch.complaint().c_str());
+          stream.watch.violation().c_str());
   }
 }
 
 void a_position_that_deviates_from_its_velocity_is_detected(void**) {
   Stream stream;
   stream.watch.feed(with(stream.next_rad(), 2, 1e-6), stream.velocity_radps);
-  check(stream.complains_of("leads"), "%s", stream.watch.complaint().c_str());
+  check(stream.complains_of("leads"), "%s", stream.watch.violation().c_str());
 }
 
 void too_much_acceleration_is_detected(void**) {
   Stream stream;
   stream.go(with(stream.velocity_radps, 3, 0.1 + 1e-6));
-  check(stream.complains_of("velocity changes"), "%s", stream.watch.complaint().c_str());
+  check(stream.complains_of("velocity changes"), "%s", stream.watch.violation().c_str());
 }
 
 void too_much_velocity_is_detected(void**) {
   Stream stream;
   for (int i = 0; i < 5; ++i) stream.go(with(stream.velocity_radps, 1, 0.1));
-  assert_string_equal(stream.watch.complaint().c_str(), "");
+  assert_string_equal(stream.watch.violation().c_str(), "");
   stream.go(with(stream.velocity_radps, 1, 0.01));
-  check(stream.complains_of("velocity 2.01"), "%s", stream.watch.complaint().c_str());
+  check(stream.complains_of("velocity 2.01"), "%s", stream.watch.violation().c_str());
 }
 
 void leaving_the_position_limits_is_detected(void**) {
   Stream stream;
   for (int i = 0; i < 100; ++i) stream.go(stream.velocity_radps);
-  check(stream.complains_of("outside"), "%s", stream.watch.complaint().c_str());
+  check(stream.complains_of("outside"), "%s", stream.watch.violation().c_str());
 }
 
 void returning_from_outside_the_limits_is_allowed(void**) {
   CommandCheck returning({all(-1), all(1), all(2), all(10)}, kPeriod_s);
   returning.begin(all(1.5), all(0));
   returning.feed(all(1.499), all(-0.1));
-  assert_string_equal(returning.complaint().c_str(), "");
+  assert_string_equal(returning.violation().c_str(), "");
 }
 
 /// While the command catches up with a pushed arm, its positions may deviate from its velocity, but only as fast as a
@@ -91,16 +91,16 @@ void returning_from_outside_the_limits_is_allowed(void**) {
 void a_jump_is_detected_even_while_catching_up(void**) {
   CommandCheck gradual({all(-1), all(1), all(2), all(10)}, kPeriod_s), jump = gradual;
   for (CommandCheck* watch : {&gradual, &jump}) {
-    watch->grant_catching_up();
+    watch->allow_position_correction();
     watch->begin(all(0.5), all(0));
   }
   gradual.feed(all(0.501), all(0));
   gradual.feed(all(0.503), all(0));
-  assert_string_equal(gradual.complaint().c_str(), "");
+  assert_string_equal(gradual.violation().c_str(), "");
   gradual.feed(all(0.506 + 1e-6), all(0));
-  assert_true(gradual.complaint().find("rate changes") != std::string::npos);
+  assert_true(gradual.violation().find("rate changes") != std::string::npos);
   jump.feed(all(0.502), all(0));
-  assert_true(jump.complaint().find("rate changes") != std::string::npos);
+  assert_true(jump.violation().find("rate changes") != std::string::npos);
 }
 
 void values_that_are_not_finite_are_detected(void**) {
@@ -123,7 +123,7 @@ void a_stream_that_begins_elsewhere_is_detected(void**) {
   CommandCheck begun({all(-1), all(1), all(2), all(10)}, kPeriod_s);
   begun.begin(all(0.5), all(0));
   begun.feed(all(0.4), all(0));
-  assert_true(begun.complaint().find("jumps") != std::string::npos);
+  assert_true(begun.violation().find("jumps") != std::string::npos);
 }
 
 void a_stream_that_ends_in_motion_is_detected(void**) {
@@ -135,9 +135,9 @@ void a_stream_that_ends_in_motion_is_detected(void**) {
 void the_first_complaint_is_kept(void**) {
   Stream stream;
   stream.watch.feed(with(stream.next_rad(), 0, std::nan("")), stream.velocity_radps);
-  const std::string first = stream.watch.complaint();
+  const std::string first = stream.watch.violation();
   stream.watch.feed(JointVector::Zero(7), JointVector::Zero(7));
-  assert_string_equal(stream.watch.complaint().c_str(), first.c_str());
+  assert_string_equal(stream.watch.violation().c_str(), first.c_str());
 }
 
 }  // namespace

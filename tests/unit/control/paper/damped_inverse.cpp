@@ -36,7 +36,7 @@ TaskJacobian jacobian_of(double s1, double s2, double s3) {
 }
 
 TaskJacobian random_jacobian(Random& random, int rows) {
-  return tool_jacobian(forward_kinematics(lwa3(), random.poses(lwa3())), rows);
+  return tool_jacobian(forward_kinematics(lwa3(), random.configuration(lwa3())), rows);
 }
 
 void damping_equals_equation_6(void**) {

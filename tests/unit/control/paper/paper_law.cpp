@@ -83,7 +83,7 @@ class Scene {
     obstacle.velocity_mps = velocity_mps;
   }
 
-  NominalCommand nominal(const Vector3* planned_mps = nullptr) {
+  NominalCommand nominal(const std::optional<Vector3>& planned_mps = {}) {
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
     const ObstacleView view{obstacles_->count > 0 ? obstacles_.get() : nullptr, 0.0, 0.0};
     const Clearance clearance = measure_clearance(lwa3(), poses, view, {0.4, 0.0});
@@ -121,7 +121,7 @@ void law_agrees_with_the_numpy_program(void**) {
     scene.gains.tool_velocity = planned ? ToolVelocity::kPlanned : ToolVelocity::kMeasured;
     const Vector3 planned_mps = one.vector("planned_v");
 
-    const NominalCommand command = scene.nominal(planned ? &planned_mps : nullptr);
+    const NominalCommand command = scene.nominal(planned ? std::optional<Vector3>(planned_mps) : std::nullopt);
     const std::string kind = one.word("kind");
     const JointVector expected = one.joints("expect_qd");
     const double tolerance = 1e-9 * std::max(1.0, expected.norm());
@@ -163,9 +163,9 @@ void planned_velocity_replaces_only_the_first_term(void**) {
   scene.qd_radps = JointVector::Constant(7, 0.1);
   const Vector3 v_tool = tool_jacobian(forward_kinematics(lwa3(), home_rad()), 3) * scene.qd_radps;
   const Vector3 planned_mps(0.1, -0.2, 0.3);
-  const NominalCommand measured = scene.nominal(&planned_mps);  // tool_velocity is measured: planned_mps is not used
+  const NominalCommand measured = scene.nominal(planned_mps);  // tool_velocity is measured: planned_mps is not used
   scene.gains.tool_velocity = ToolVelocity::kPlanned;
-  const NominalCommand planned = scene.nominal(&planned_mps), first = scene.nominal(nullptr);
+  const NominalCommand planned = scene.nominal(planned_mps), first = scene.nominal();
   check_near(planned.tool_velocity_mps - planned_mps, measured.tool_velocity_mps - v_tool, 1e-12);
   check_near(first.tool_velocity_mps, measured.tool_velocity_mps, 0);
 }

@@ -74,7 +74,7 @@ Proximity near_forearm(const LinkPoses& poses, double distance_m) {
 void deviation_does_not_move_the_tool(void**) {
   Random random(1);
   for (int trial = 0; trial < 200; ++trial) {
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     const TaskJacobian j = tool_jacobian(poses, trial % 2 ? 3 : 6);
     const TaskInverse inverse = invert(PaperGains(), j);
     const JointVector task = random.joints(7, -1, 1);

@@ -137,7 +137,7 @@ void distance_rows_are_the_gradients_of_the_distances(void**) {
   Random random(1);
   int seen[2] = {}, inside = 0;
   for (int trial = 0; trial < 3000; ++trial) {
-    Scene scene(random.poses(lwa3()));
+    Scene scene(random.configuration(lwa3()));
     const int shape = moving_shape(random);
     const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     scene.add(obstacle);
@@ -153,7 +153,7 @@ void distance_rows_are_the_gradients_of_the_distances(void**) {
 void the_bounds_of_distance_rows_are_barriers(void**) {
   Random random(2);
   for (int trial = 0; trial < 500; ++trial) {
-    Scene scene(random.poses(lwa3()));
+    Scene scene(random.configuration(lwa3()));
     const int shape = moving_shape(random);
     Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     obstacle.velocity_mps.setZero();
@@ -177,7 +177,7 @@ void the_bounds_of_distance_rows_are_barriers(void**) {
 void an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it(void**) {
   Random random(3);
   for (int trial = 0; trial < 500; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     const int shape = moving_shape(random);
     Obstacle obstacle = random_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
     const Proximity now = measure_pair(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), obstacle);
@@ -201,7 +201,7 @@ void pass_rows_are_the_gradients_of_the_closest_approach(void**) {
   Random random(4);
   int seen = 0;
   for (int trial = 0; trial < 4500; ++trial) {
-    Scene scene(random.poses(lwa3()));
+    Scene scene(random.configuration(lwa3()));
     const int shape = moving_shape(random);
     const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
     scene.add(obstacle);
@@ -228,7 +228,7 @@ void a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point(void**) {
   Random random(7);
   int seen = 0;
   for (int trial = 0; trial < 1000; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     const int shape = moving_shape(random);
     Obstacle turning = random_obstacle(transformed(forward_kinematics(lwa3(), q_rad), shape_of(shape)), random);
     turning.velocity_mps.setZero();
@@ -251,7 +251,7 @@ void rows_of_self_pairs_are_the_gradients_of_their_distances(void**) {
   Random random(5);
   int seen = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    Scene scene(random.poses(lwa3()));
+    Scene scene(random.configuration(lwa3()));
     for (const auto& [a, b] : pairs) {
       const auto distance = [a = a, b = b](const LinkPoses& poses) {
         return measure_pair(transformed(poses, shape_of(a)), transformed(poses, shape_of(b)));
@@ -320,7 +320,7 @@ void only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped(void**
   Random random(6);
   int crowded = 0;
   for (int trial = 0; trial < 300; ++trial) {
-    Scene scene(random.poses(lwa3()));
+    Scene scene(random.configuration(lwa3()));
     scene.last_radps = random.joints(7, -2, 2);
     std::vector<NearPair> near;
     for (int i = random.index(kMaxNear + 1); i > 0; --i) {

@@ -52,7 +52,7 @@ struct Scene {
     return {model().arm,        poses,         q_rad,     last_radps,    clearance, view,
             model().self_pairs, evasion_radps, kPeriod_s, comfort_weight};
   }
-  Shielded shielded() const {
+  ShieldResult shielded() const {
     return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);
   }
   ConstraintRows hard_rows() const { return make_rows(model().settings.shield, input(), sustainable, range).step; }
@@ -62,9 +62,9 @@ struct Scene {
     ++set.count;
   }
   /// One period: the arm moves at the shield's velocity, the obstacles at theirs.
-  Shielded cycle() {
+  ShieldResult cycle() {
     measure();
-    const Shielded given = shielded();
+    const ShieldResult given = shielded();
     q_rad += kPeriod_s * given.velocity_radps;
     last_radps = given.velocity_radps;
     evasion_radps = given.plan.evading ? given.plan.velocity_radps : JointVector();
@@ -100,7 +100,7 @@ Vector3 on_the_arm(const LinkPoses& poses, Random& random) {
 
 JointVector extreme_configuration(Random& random) {
   const JointLimits& limits = model().arm.limits;
-  JointVector q_rad = random.poses(model().arm);
+  JointVector q_rad = random.configuration(model().arm);
   if (random.chance(0.1)) q_rad = test::home_rad();
   if (random.chance(0.1)) q_rad.setZero();  // stretched
   for (int i = 0; i < 7; ++i) {
@@ -192,7 +192,7 @@ double least_shortfall(const ConstraintRows& rows, const VelocityRange& range, R
 // Shortfall that the hard tier may have in favour of the nominal velocity: its weight is large, not infinite.
 constexpr double kShortfall_mps = 5e-3;
 
-void check_least_slack(const Scene& scene, const Shielded& given, Random& random, long trial) {
+void check_least_slack(const Scene& scene, const ShieldResult& given, Random& random, long trial) {
   const ConstraintRows rows = scene.hard_rows();
   const double shortfall_mps = worst_shortfall(rows, given.velocity_radps);
   check(shortfall_mps <= given.hard_slack_mps + kShortfall_mps, "state %ld: shortfall %g m/s, %g reported", trial,
@@ -203,7 +203,7 @@ void check_least_slack(const Scene& scene, const Shielded& given, Random& random
 }
 
 /// CPU time of one call. A long one is repeated, since other load on the machine may have caused it.
-double cpu_time_s(const Scene& scene, Shielded& given) {
+double cpu_time_s(const Scene& scene, ShieldResult& given) {
   double least_s = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < 3 && least_s > 0.2 * kPeriod_s; ++attempt) {
     const std::clock_t start = std::clock();
@@ -219,7 +219,7 @@ void in_any_state_the_velocity_is_within_range_and_computed_within_a_period(void
   double longest_s = 0.0, sum_s = 0.0;
   for (long trial = 0; trial < states(); ++trial) {
     randomise(scene, random);
-    Shielded given;
+    ShieldResult given;
     const double took_s = cpu_time_s(scene, given);
     longest_s = std::max(longest_s, took_s);
     sum_s += took_s;
@@ -240,7 +240,7 @@ void the_worst_hard_row_has_the_least_possible_slack(void**) {
   int has_slack = 0;
   for (long trial = 0; trial < states() / 40; ++trial) {
     randomise(scene, random);
-    const Shielded given = scene.shielded();
+    const ShieldResult given = scene.shielded();
     check_least_slack(scene, given, random, trial);
     if (given.hard_slack_mps > 0.01) ++has_slack;
   }
@@ -263,7 +263,7 @@ void without_obstacles_a_nominal_velocity_within_range_is_unchanged(void**) {
     const ConstraintRows rows =
         make_rows(model().settings.shield, scene.input(), scene.sustainable, scene.sustainable).step;
     if (worst_shortfall(rows, scene.nominal_radps) > 0.0) continue;
-    const Shielded given = scene.shielded();
+    const ShieldResult given = scene.shielded();
     check_near_because(given.velocity_radps, scene.nominal_radps, 0.0, "state %d", trial);
     check_near(given.hard_slack_mps, 0.0, 0.0);
     ++unchanged;
@@ -296,7 +296,7 @@ void an_arm_driven_toward_a_static_obstacle_stops_before_it(void**) {
   Random random(4);
   int stopped = 0;
   for (int trial = 0; trial < 30; ++trial) {
-    Scene scene{random.poses(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
+    Scene scene{random.configuration(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
     scene.measure();
     const Vector3 centre = on_the_arm(scene.poses, random) + random.direction() * random.uniform(0.2, 0.5);
     const Vector3 half = trial % 3 ? Vector3(Vector3::Zero()) : random.inside(-0.2, 0.2);
@@ -320,7 +320,7 @@ void in_contact_the_distance_only_grows(void**) {
   Random random(5);
   int freed = 0, trials = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    Scene scene{random.poses(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
+    Scene scene{random.configuration(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
     scene.measure();
     const Vector3 centre = on_the_arm(scene.poses, random) + random.direction() * random.uniform(0.02, 0.1);
     scene.add({centre, centre, random.uniform(0.02, 0.1)});
@@ -349,7 +349,7 @@ void between_two_obstacles_the_slack_is_the_least_possible(void**) {
   Random random(6);
   int with_slack = 0;
   for (int trial = 0; trial < 20; ++trial) {
-    Scene scene{random.poses(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
+    Scene scene{random.configuration(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
     scene.measure();
     const Vector3 middle = on_the_arm(scene.poses, random), side = random.direction();
     const double radius_m = random.uniform(0.03, 0.1), speed_mps = random.uniform(0.1, 0.5);
@@ -359,7 +359,7 @@ void between_two_obstacles_the_slack_is_the_least_possible(void**) {
     bool has_slack = false;
     for (int cycle = 0; cycle < 100; ++cycle) {
       scene.nominal_radps = random.joints(7, -1, 1);
-      const Shielded given = scene.cycle();
+      const ShieldResult given = scene.cycle();
       has_slack = has_slack || given.hard_slack_mps > 0.01;
       if (cycle % 5) continue;
       scene.measure();
@@ -374,18 +374,20 @@ void between_two_obstacles_the_slack_is_the_least_possible(void**) {
 State reachable_state(Random& random, const JointVector& measured_rad, double now_s) {
   State state;
   state.supervision = {random.chance(0.8) ? Mode::kTrack : Mode::kHold, Fault::kNone, ""};
-  state.commanding = true;
-  state.position_rad = measured_rad;
-  if (random.chance(0.3)) state.position_rad += random.joints(7, -0.02, 0.02);
-  const VelocityRange sustainable = sustainable_range(model().arm.limits, state.position_rad.cwiseMin(measured_rad),
-                                                      state.position_rad.cwiseMax(measured_rad), kPeriod_s);
-  state.velocity_radps = random.joints(7, -2, 2).cwiseMax(sustainable.lower_radps).cwiseMin(sustainable.upper_radps);
-  state.rate_radps = state.velocity_radps;
-  state.arm_count = 1;
-  state.arm_utime = 1;
-  state.arm_received_s = now_s;
-  state.arm_position_rad = measured_rad;
-  state.cycle_s = now_s - kPeriod_s;
+  state.stream.running = true;
+  state.stream.position_rad = measured_rad;
+  if (random.chance(0.3)) state.stream.position_rad += random.joints(7, -0.02, 0.02);
+  const VelocityRange sustainable =
+      sustainable_range(model().arm.limits, state.stream.position_rad.cwiseMin(measured_rad),
+                        state.stream.position_rad.cwiseMax(measured_rad), kPeriod_s);
+  state.stream.velocity_radps =
+      random.joints(7, -2, 2).cwiseMax(sustainable.lower_radps).cwiseMin(sustainable.upper_radps);
+  state.stream.rate_radps = state.stream.velocity_radps;
+  state.arm_monitor.count = 1;
+  state.arm_monitor.utime = 1;
+  state.arm_monitor.received_s = now_s;
+  state.arm_monitor.position_rad = measured_rad;
+  state.arm_monitor.cycle_s = now_s - kPeriod_s;
   return state;
 }
 
@@ -412,11 +414,11 @@ void in_any_state_the_arm_can_follow_the_command_of_a_cycle(void**) {
     const Inputs inputs{{&arm, now_s, 1}, {&target, now_s, 1}, {&scene.set, now_s - age_s, 1}, 0, false};
     const Result result = step(model(), state, inputs, now_s);
     test::CommandCheck commands(model().arm.limits, kPeriod_s);
-    commands.begin(state.position_rad, state.velocity_radps);
+    commands.begin(state.stream.position_rad, state.stream.velocity_radps);
     commands.feed(result.command.position_rad, result.command.velocity_radps);
     check(result.commanding && result.report.mode == Mode::kTrack, "state %ld: mode %d", trial,
           static_cast<int>(result.report.mode));
-    check(commands.complaint().empty(), "state %ld: %s", trial, commands.complaint().c_str());
+    check(commands.violation().empty(), "state %ld: %s", trial, commands.violation().c_str());
   }
 }
 

@@ -4,7 +4,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
-#include "firmware/io/lcm/admission.h"
+#include "firmware/io/lcm/network_inputs.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/lwa3.h"
@@ -19,11 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool receive(NetworkInputs& inputs, Packet packet, double now_s, Received<ObstacleSet>& received) {
+  return inputs.receive_obstacles(0, packet, now_s, received);
+}
 template <typename Message>
-void receive(Admission& admission, const test::Bytes& bytes, double now_s, Received<Message>& received) {
-  assert_true(admission.admit(bytes.data(), bytes.size(), now_s, received.message));
-  received.bytes = bytes;
-  received.received_s = now_s;
+bool receive(NetworkInputs& inputs, Packet packet, double now_s, Received<Message>& received) {
+  return inputs.receive(packet, now_s, received);
+}
+template <typename Message>
+void receive(NetworkInputs& inputs, const test::Bytes& bytes, double now_s, Received<Message>& received) {
+  assert_true(receive(inputs, Packet{bytes.data(), bytes.size()}, now_s, received));
   ++received.count;
 }
 
@@ -32,8 +37,8 @@ struct RecordedRun {
   Config config = load_config("firmware/config/lwa3.yaml", {});
   std::atomic<bool> requested{false};
   std::unique_ptr<Blackbox> blackbox;
-  Admission admission{7, config.model.settings};
-  Encoder encoder{config.model.arm, config.dialect};
+  NetworkInputs inputs{config.model.settings, 7, *config.dialect, {}, false};
+  Encoder encoder{config.model.arm, *config.dialect};
   Received<ArmState> arm;
   Received<Target> target;
   std::unique_ptr<Received<ObstacleSet>> obstacles = std::make_unique<Received<ObstacleSet>>();
@@ -53,18 +58,18 @@ struct RecordedRun {
     std::vector<obstacle_t> spheres;
     for (int i = 0; i < count; ++i)
       spheres.push_back(test::sphere(i, Vector3(1.0, 0.01 * i, 0.5), 0.05, Vector3::Zero()));
-    receive(admission, encoded(test::obstacles_message(cycles + 1, spheres)), 0.01 * cycles, *obstacles);
+    receive(inputs, encoded(test::obstacles_message(cycles + 1, spheres)), 0.01 * cycles, *obstacles);
   }
 
   void receive_sphere(const Vector3& centre_m, int64_t later_us = 0) {
     const obstacle_t sphere = test::sphere(1, centre_m, 0.05, Vector3::Zero());
     const int64_t utime = 10000 * (cycles + 1) + later_us;
-    receive(admission, encoded(test::obstacles_message(utime, {sphere})), 0.01 * cycles, *obstacles);
+    receive(inputs, encoded(test::obstacles_message(utime, {sphere})), 0.01 * cycles, *obstacles);
   }
 
   void receive_target() {
     const target_t message = test::target_message(cycles + 1, Vector3(0.1, 0.45, 0.7), Vector3::Zero());
-    receive(admission, encoded(message), 0.01 * static_cast<double>(cycles), target);
+    receive(inputs, encoded(message), 0.01 * static_cast<double>(cycles), target);
   }
 
   void cycle() {
@@ -72,7 +77,7 @@ struct RecordedRun {
     recorded.arguments.seq = ++cycles;
     const double now_s = recorded.arguments.now_s = 0.01 * static_cast<double>(cycles);
     const auto arm_state = test::arm_state_message(10000 * cycles, now.position_rad, now.velocity_radps);
-    receive(admission, encoded(arm_state), now_s, arm);
+    receive(inputs, encoded(arm_state), now_s, arm);
     recorded.arguments.inputs = {arm.latest(), target.latest(), obstacles->latest(), 0, false};
     recorded.arguments.guide = guide;
     if (guide.knots > 0) recorded.arguments.inputs.guide = &recorded.arguments.guide;
@@ -86,7 +91,7 @@ struct RecordedRun {
     const Packet status = encoder.encode(recorded.report, recorded.record);
     statuses.emplace_back(status.bytes, status.bytes + status.size);
     const int64_t before = test::allocation_count();
-    blackbox->keep({arm, target, *obstacles}, recorded);
+    blackbox->record({arm, target, *obstacles}, recorded);
     assert_int_equal(test::allocation_count() - before, 0);
   }
 
@@ -143,7 +148,7 @@ void a_message_in_use_is_in_every_log_even_when_sent_only_once(void**) {
     Events events(log);
     assert_int_equal(events.count["TARGET"], 1);
     assert_int_equal(events.count["OBSTACLES"], 1);
-    assert_true(test::agreed(log) >= 1000);
+    assert_true(test::agreeing_cycles(log) >= 1000);
   }
 }
 
@@ -161,7 +166,7 @@ void a_run_among_jumping_obstacles_replays_bit_for_bit(void**) {
       run.cycle();
     }
     assert_int_equal(static_cast<int>(run.state.supervision.mode), static_cast<int>(Mode::kTrack));
-    assert_true(test::agreed(run.log()) >= 100);
+    assert_true(test::agreeing_cycles(run.log()) >= 100);
   }
 }
 
@@ -237,12 +242,12 @@ void a_full_disk_is_reported_in_one_line(void**) {
 void step_arguments_are_restored_from_their_image_but_not_from_a_damaged_one(void**) {
   StepArguments arguments, back;
   arguments.seq = 5;
-  arguments.state.position_rad = test::home_rad();
+  arguments.state.stream.position_rad = test::home_rad();
   StepArgumentsImage image;
   to_image(arguments, image);
   assert_true(from_image(&image, sizeof image, back));
   assert_int_equal(back.seq, 5);
-  check_near(back.state.position_rad, test::home_rad(), 0.0);
+  check_near(back.state.stream.position_rad, test::home_rad(), 0.0);
   assert_false(from_image(&image, sizeof image - 1, back));
   for (size_t at = 0; at < sizeof image; ++at) {
     reinterpret_cast<uint8_t*>(&image)[at] ^= 0x10;

@@ -119,9 +119,9 @@ void each_text_and_flag_sets_its_field(void**) {
   assert_true(load("paper: {tool_velocity: measured}").model.settings.paper.tool_velocity == ToolVelocity::kMeasured);
   assert_false(load("obstacles: {wait_for_first: false}").model.settings.wait_for_obstacles);
   assert_true(load("obstacles: {wait_for_first: true}").model.settings.wait_for_obstacles);
-  assert_true(load("").dialect == Dialect::kSidestep);
-  assert_true(load("dialect: sidestep").dialect == Dialect::kSidestep);
-  assert_true(load("dialect: iiwa").dialect == Dialect::kIiwa);
+  assert_true(load("").dialect == &kSidestepDialect);
+  assert_true(load("dialect: sidestep").dialect == &kSidestepDialect);
+  assert_true(load("dialect: iiwa").dialect == &kIiwaDialect);
   const Channels channels =
       load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F}")
           .channels;

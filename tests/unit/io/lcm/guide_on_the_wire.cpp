@@ -13,7 +13,7 @@ namespace {
 constexpr int kPoints = 8;
 
 controller_status_t decoded_status(const Report& report) {
-  Encoder encoder(test::lwa3());
+  Encoder encoder(test::lwa3(), kSidestepDialect);
   const Packet packet = encoder.encode(report, CycleRecord{});
   controller_status_t status;
   assert_int_equal(status.decode(packet.bytes, 0, static_cast<int>(packet.size)), packet.size);

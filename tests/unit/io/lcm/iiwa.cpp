@@ -1,12 +1,12 @@
 #include <limits>
 
-#include "firmware/io/lcm/admission.h"
 #include "firmware/io/lcm/encoder.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/iiwa_driver.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
+#include "tests/support/test_inputs.h"
 
 using namespace sidestep;
 using test::ClosedLoop;
@@ -18,10 +18,10 @@ namespace {
 constexpr int kJoints = 7;
 
 /// Decodes a status into an arm state. Returns whether the status was accepted.
-bool admit(const drake::lcmt_iiwa_status& status, ArmState& state) {
-  Admission gate(kJoints, Settings(), false, Dialect::kIiwa);
+bool receive(const drake::lcmt_iiwa_status& status, ArmState& state) {
+  test::TestInputs inputs(kJoints, Settings(), kIiwaDialect);
   const test::Bytes bytes = encoded(status);
-  return gate.admit(bytes.data(), bytes.size(), 0.0, state);
+  return inputs.receive(bytes.data(), bytes.size(), 0.0, state);
 }
 
 void a_status_becomes_an_arm_state(void**) {
@@ -29,10 +29,10 @@ void a_status_becomes_an_arm_state(void**) {
   const JointVector measured_rad = random.joints(kJoints, -2, 2), velocity_radps = random.joints(kJoints, -1, 1);
   const JointVector commanded_rad = measured_rad + random.joints(kJoints, -0.01, 0.01);
   ArmState state;
-  assert_true(admit(iiwa_status(0, measured_rad, velocity_radps, commanded_rad), state));  // Drake's time starts at 0
+  assert_true(receive(iiwa_status(0, measured_rad, velocity_radps, commanded_rad), state));  // Drake's time starts at 0
   assert_int_equal(state.utime, 0);
-  check_near(state.position_rad, measured_rad, 0);
-  check_near(state.velocity_radps, velocity_radps, 0);
+  check_near(state.stream.position_rad, measured_rad, 0);
+  check_near(state.stream.velocity_radps, velocity_radps, 0);
   check_near(state.held_rad, commanded_rad, 0);
 }
 
@@ -43,7 +43,7 @@ void an_impossible_commanded_position_is_ignored(void**) {
       JointVector commanded_rad = here_rad;
       commanded_rad[joint] = wrong_rad;
       ArmState state;
-      assert_true(admit(iiwa_status(1, here_rad, rest, commanded_rad), state));
+      assert_true(receive(iiwa_status(1, here_rad, rest, commanded_rad), state));
       assert_int_equal(state.held_rad.size(), 0);
     }
   }
@@ -51,7 +51,7 @@ void an_impossible_commanded_position_is_ignored(void**) {
 
 void a_command_holds_positions_only(void**) {
   const Arm& arm = test::lwa3();
-  Encoder encoder(arm, Dialect::kIiwa);
+  Encoder encoder(arm, kIiwaDialect);
   const Command command{JointVector::LinSpaced(kJoints, -1, 1), JointVector::Constant(kJoints, 0.5)};
   const Packet packet = encoder.encode(command, 123, 7);
   drake::lcmt_iiwa_command message;
@@ -82,14 +82,14 @@ void no_command_is_sent_within_the_guard_time(void**) {
     return loop.now_s() - since_s;
   };
   check_near(silence_s(), 0.26, 1e-6);  // one cycle passes before the first status
-  loop.target_speaks = true;
+  loop.sends_target = true;
   loop.run(0.3);
   loop.arm_clock_offset_us = -1'000'000;  // another driver without a pause: its utimes start again
   check_near(silence_s(), 0.26, 1e-6);
   loop.run(0.3);
-  loop.arm_speaks = false;
+  loop.sends_arm_state = false;
   loop.run(0.26);
-  loop.arm_speaks = true;  // the driver may be another one
+  loop.sends_arm_state = true;  // the driver may be another one
   check_near(silence_s(), 0.26, 1e-6);
 }
 

@@ -92,7 +92,7 @@ double reach_under_the_plate(const Model& model) {
   plate.solid = {sim::Shape::kBox, kPlate_m};
   plate.motion.position_m = kPlatePlace_m;
   loop.target.position_m = Vector3(-0.6, 0.0, 0.2);
-  loop.target_speaks = true;
+  loop.sends_target = true;
   double least_m = 1.0;
   for (int i = 0; i < 600; ++i) {
     loop.cycle();

@@ -61,7 +61,7 @@ void fk_agrees_with_kdl_for_any_axes(void**) {
     KDL::ChainFkSolverPos_recursive solver(arm.chain);
     Random random(1);
     for (int trial = 0; trial < 200; ++trial) {
-      const JointVector q_rad = random.poses(arm);
+      const JointVector q_rad = random.configuration(arm);
       KDL::Frame frame;
       assert_true(solver.JntToCart(to_kdl(q_rad), frame) >= 0);
       const LinkPoses poses = forward_kinematics(arm, q_rad);
@@ -80,7 +80,7 @@ void the_jacobian_agrees_with_kdl_for_any_axes(void**) {
     KDL::Jacobian expected(static_cast<unsigned>(arm.joints));
     Random random(2);
     for (int trial = 0; trial < 200; ++trial) {
-      const JointVector q_rad = random.poses(arm);
+      const JointVector q_rad = random.configuration(arm);
       assert_true(solver.JntToJac(to_kdl(q_rad), expected) >= 0);
       check_near_because(tool_jacobian(forward_kinematics(arm, q_rad), 6), expected.data, 1e-12, "%s, trial %d",
                          kind.file, trial);
@@ -138,7 +138,7 @@ void shapes_stay_on_their_links(void**) {
     assert_true(kdl_parser::treeFromUrdfModel(*model, tree));
     Random random(3);
     for (int trial = 0; trial < 20; ++trial) {
-      const JointVector q_rad = random.poses(arm);
+      const JointVector q_rad = random.configuration(arm);
       const LinkPoses poses = forward_kinematics(arm, q_rad);
       std::map<std::string, size_t> used;
       for (const LinkShape& shape : arm.shapes) {

@@ -44,7 +44,7 @@ void home_is_the_papers_home(void**) {
 void fk_agrees_with_the_dh_chain_in_random_configurations(void**) {
   Random random(1);
   for (int trial = 0; trial < 1000; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
     check_near_because(poses.tool_position, Vector3(craig(q_rad).translation()), 1e-12, "trial %d", trial);
     check_near_because(poses.tool_rotation, Matrix3(craig(q_rad).linear()), 1e-12, "trial %d", trial);
@@ -55,7 +55,7 @@ void fk_agrees_with_kdl_in_random_configurations(void**) {
   KDL::ChainFkSolverPos_recursive solver(lwa3().chain);
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     KDL::Frame frame;
     assert_int_equal(solver.JntToCart(to_kdl(q_rad), frame), 0);
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
@@ -72,7 +72,7 @@ void the_tool_jacobian_agrees_with_kdl_in_random_configurations(void**) {
   Random random(3);
   KDL::Jacobian expected(7);
   for (int trial = 0; trial < 1000; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     assert_int_equal(solver.JntToJac(to_kdl(q_rad), expected), 0);
     const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
     check_near_because(tool_jacobian(poses, 6), expected.data, 1e-12, "trial %d", trial);
@@ -83,7 +83,7 @@ void the_tool_jacobian_agrees_with_kdl_in_random_configurations(void**) {
 void a_point_jacobian_is_the_derivative_of_the_point(void**) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {
-    const JointVector q_rad = random.poses(lwa3());
+    const JointVector q_rad = random.configuration(lwa3());
     const int body = random.index(8);
     const Vector3 p_body = random.inside(-0.3, 0.3);
     const auto position = [&](const JointVector& q) {
@@ -127,7 +127,7 @@ void the_arm_is_four_capsules_of_five_centimetres(void**) {
 void the_capsules_join_shoulder_elbow_wrist_and_tool(void**) {
   Random random(5);
   for (int trial = 0; trial < 100; ++trial) {
-    const LinkPoses poses = forward_kinematics(lwa3(), random.poses(lwa3()));
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
     const Vector3 joints[] = {Vector3::Zero(), poses.origin[1], poses.origin[3], poses.origin[5], poses.tool_position};
     check_near(joints[1], Vector3(0, 0, 0.3), 1e-12);
     for (size_t i = 0; i < 4; ++i) {

@@ -89,7 +89,7 @@ void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void*
   Random random(1);
   int met = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    JointVector q_rad = random.poses(model.arm, 0.95), last_radps = JointVector::Zero(7);
+    JointVector q_rad = random.configuration(model.arm, 0.95), last_radps = JointVector::Zero(7);
     double least_m = 0.0, nearest_m = 1.0;
     folding_nominal(model.arm, forward_kinematics(model.arm, q_rad), model.self_pairs, least_m);
     if (least_m < 0.05) continue;

@@ -1,8 +1,9 @@
-#include "firmware/io/lcm/admission.h"
+#include "firmware/control/validation.h"
 #include "tests/support/check.h"
 #include "tests/support/iiwa_driver.h"
 #include "tests/support/messages.h"
 #include "tests/support/random.h"
+#include "tests/support/test_inputs.h"
 
 using namespace sidestep;
 using test::arm_state_message;
@@ -11,6 +12,7 @@ using test::encoded;
 using test::obstacles_message;
 using test::Random;
 using test::target_message;
+using test::TestInputs;
 
 namespace {
 
@@ -26,9 +28,9 @@ ObstacleSet set;
 struct Channel {
   const char* name;
   Bytes good;
-  bool (*admit)(Admission&, const void*, size_t);
+  bool (*receive)(TestInputs&, const void*, size_t);
   bool (*plausible_value)();
-  Dialect dialect = Dialect::kSidestep;
+  const Dialect* dialect = &kSidestepDialect;
 };
 
 target_t turning_target() {
@@ -50,29 +52,29 @@ std::vector<Channel> channels() {
   const obstacle_t ball = test::sphere(4, Vector3(0.5, 0.5, 0.5), 0.1, Vector3(0, 0, 0.1));
   return {
       {"arm state", encoded(arm_state_message(7, q_rad, qd_radps)),
-       [](Admission& gate, const void* bytes, size_t size) { return gate.admit(bytes, size, 0.0, arm); },
+       [](TestInputs& inputs, const void* bytes, size_t size) { return inputs.receive(bytes, size, 0.0, arm); },
        [] { return plausible(arm, kJoints); }},
       {"target", encoded(turning_target()),
-       [](Admission& gate, const void* bytes, size_t size) { return gate.admit(bytes, size, 0.0, target); },
+       [](TestInputs& inputs, const void* bytes, size_t size) { return inputs.receive(bytes, size, 0.0, target); },
        [] { return plausible(target); }},
       {"obstacles", encoded(obstacles_message(7, {capsule(), ball})),
-       [](Admission& gate, const void* bytes, size_t size) { return gate.admit(bytes, size, 0.0, set); },
+       [](TestInputs& inputs, const void* bytes, size_t size) { return inputs.receive(bytes, size, 0.0, set); },
        [] {
          bool all = set.count >= 0 && set.count <= kMaxObstacles;
          for (int i = 0; all && i < set.count; ++i) all = plausible(set.obstacles[static_cast<size_t>(i)]);
          return all;
        }},
       {"iiwa status", encoded(test::iiwa_status(7, q_rad, qd_radps, q_rad)),
-       [](Admission& gate, const void* bytes, size_t size) { return gate.admit(bytes, size, 0.0, arm); },
-       [] { return plausible(arm, kJoints) && arm.held_rad.allFinite(); }, Dialect::kIiwa},
+       [](TestInputs& inputs, const void* bytes, size_t size) { return inputs.receive(bytes, size, 0.0, arm); },
+       [] { return plausible(arm, kJoints) && arm.held_rad.allFinite(); }, &kIiwaDialect},
   };
 }
 
 bool accepts(const Channel& channel, const Bytes& bytes) {
-  Admission gate(kJoints, Settings(), false, channel.dialect);
+  TestInputs gate(kJoints, Settings(), *channel.dialect);
   // On the heap with the exact size, so that a sanitizer detects a read beyond the end.
   const Bytes exact(bytes.begin(), bytes.end());
-  const bool accepted = channel.admit(gate, exact.data(), exact.size());
+  const bool accepted = channel.receive(gate, exact.data(), exact.size());
   check(gate.rejected() == (accepted ? 0 : 1), "%s: %ld rejected", channel.name, gate.rejected());
   check((*gate.last_reason() == '\0') == accepted, "%s: reason '%s'", channel.name, gate.last_reason());
   return accepted;

@@ -1,9 +1,10 @@
-#include "firmware/io/lcm/admission.h"
+#include "firmware/io/lcm/network_inputs.h"
 
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/messages.h"
 #include "tests/support/random.h"
+#include "tests/support/test_inputs.h"
 
 using namespace sidestep;
 using test::arm_state_message;
@@ -12,14 +13,15 @@ using test::encoded;
 using test::obstacles_message;
 using test::Random;
 using test::target_message;
+using test::TestInputs;
 
 namespace {
 
 constexpr int kJoints = 7;
 
 template <typename Value>
-bool admit(Admission& admission, const Bytes& bytes, Value& value, double now_s = 0.0) {
-  return admission.admit(bytes.data(), bytes.size(), now_s, value);
+bool receive(TestInputs& inputs, const Bytes& bytes, Value& value, double now_s = 0.0) {
+  return inputs.receive(bytes.data(), bytes.size(), now_s, value);
 }
 
 obstacle_t random_obstacle(Random& random, int8_t shape) {
@@ -46,28 +48,28 @@ Matrix3 rotation(const double* wxyz) {
 void an_arm_state_arrives_as_it_was_sent(void**) {
   Random random(1);
   for (int joints = 6; joints <= kMaxJoints; ++joints) {
-    Admission admission(joints, Settings());
+    TestInputs inputs(joints, Settings());
     const JointVector q_rad = random.joints(joints, -3, 3), qd_radps = random.joints(joints, -2, 2);
     ArmState state;
-    assert_true(admit(admission, encoded(arm_state_message(123456789, q_rad, qd_radps)), state));
+    assert_true(receive(inputs, encoded(arm_state_message(123456789, q_rad, qd_radps)), state));
     assert_int_equal(state.utime, 123456789);
-    check_near(state.position_rad, q_rad, 0);
-    check_near(state.velocity_radps, qd_radps, 0);
-    assert_int_equal(admission.rejected(), 0);
-    assert_string_equal(admission.last_reason(), "");
+    check_near(state.stream.position_rad, q_rad, 0);
+    check_near(state.stream.velocity_radps, qd_radps, 0);
+    assert_int_equal(inputs.rejected(), 0);
+    assert_string_equal(inputs.last_reason(), "");
   }
 }
 
 void a_target_arrives_as_it_was_sent(void**) {
   Random random(2);
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   target_t message = target_message(5, random.inside(-1, 1), random.inside(-1, 1));
   message.tracks_orientation = 1;
   const double wxyz[] = {0.5, -0.5, 0.5, 0.5};
   std::copy(wxyz, wxyz + 4, message.quaternion);
   test::copy(Vector3(0.1, 0.2, 0.3), message.angular_velocity);
   Target target;
-  assert_true(admit(admission, encoded(message), target));
+  assert_true(receive(inputs, encoded(message), target));
   assert_int_equal(target.utime, 5);
   check_near(target.position_m, vector(message.position), 0);
   check_near(target.velocity_mps, vector(message.velocity), 0);
@@ -77,35 +79,35 @@ void a_target_arrives_as_it_was_sent(void**) {
 }
 
 void a_point_target_ignores_the_orientation_fields(void**) {
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   target_t message = target_message(5, Vector3(1, 2, 3), Vector3(0, 0, 0));
   message.quaternion[0] = 0.0;
   message.angular_velocity[1] = 1e300;
   Target target;
-  assert_true(admit(admission, encoded(message), target));
+  assert_true(receive(inputs, encoded(message), target));
   assert_false(target.tracks_orientation);
   check_near(target.orientation.coeffs(), Quaternion::Identity().coeffs(), 0);
   check_near(target.angular_velocity_radps, Vector3(0, 0, 0), 0);
 }
 
 void a_quaternion_of_nearly_unit_length_is_normalized(void**) {
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   target_t message = target_message(5, Vector3(1, 2, 3), Vector3(0, 0, 0));
   message.tracks_orientation = 1;
   message.quaternion[0] = 1.0005;
   Target target;
-  assert_true(admit(admission, encoded(message), target));
+  assert_true(receive(inputs, encoded(message), target));
   check_near(target.orientation.norm(), 1.0, 1e-15);
 }
 
 void spheres_and_capsules_arrive_as_they_were_sent(void**) {
   Random random(3);
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   for (int trial = 1; trial <= 100; ++trial) {
     const obstacle_t sphere = random_obstacle(random, obstacle_t::SPHERE),
                      capsule = random_obstacle(random, obstacle_t::CAPSULE);
-    assert_true(admit(admission, encoded(obstacles_message(trial, {sphere, capsule})), *set));
+    assert_true(receive(inputs, encoded(obstacles_message(trial, {sphere, capsule})), *set));
     assert_int_equal(set->count - set->obstacle_memory, 2);
     const Obstacle &a = set->obstacles[0], &b = set->obstacles[1];
     assert_int_equal(a.id, sphere.id);
@@ -126,10 +128,10 @@ void spheres_and_capsules_arrive_as_they_were_sent(void**) {
 void a_box_arrives_with_its_corners_and_a_capsule_that_encloses_them(void**) {
   Random random(4);
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   for (int trial = 1; trial <= 200; ++trial) {
     const obstacle_t sent = random_obstacle(random, obstacle_t::BOX);
-    assert_true(admit(admission, encoded(obstacles_message(trial, {sent})), *set));
+    assert_true(receive(inputs, encoded(obstacles_message(trial, {sent})), *set));
     const Obstacle& obstacle = set->obstacles[0];
     assert_true(obstacle.shape == Shape::kBox);
     const Box box = box_of(obstacle);
@@ -150,48 +152,48 @@ void a_box_arrives_with_its_corners_and_a_capsule_that_encloses_them(void**) {
 void an_empty_set_is_accepted(void**) {
   const auto set = std::make_unique<ObstacleSet>();
   set->count = 3;
-  Admission admission(kJoints, Settings());
-  assert_true(admit(admission, encoded(obstacles_message(1, {})), *set));
+  TestInputs inputs(kJoints, Settings());
+  assert_true(receive(inputs, encoded(obstacles_message(1, {})), *set));
   assert_int_equal(set->count, 0);
 }
 
 void a_set_of_4096_obstacles_is_accepted_and_a_larger_one_rejected(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   std::vector<obstacle_t> obstacles(kMaxObstacles, test::sphere(1, Vector3(1, 2, 3), 0.1, Vector3(0, 0, 0)));
   obstacles.back().id = 77;
   assert_int_equal(kMaxObstacles, 4096);
-  assert_true(admit(admission, encoded(obstacles_message(1, obstacles)), *set));
+  assert_true(receive(inputs, encoded(obstacles_message(1, obstacles)), *set));
   assert_int_equal(set->count, 4096);
   assert_int_equal(set->obstacles[4095].id, 77);
   obstacles.push_back(obstacles.back());
-  assert_false(admit(admission, encoded(obstacles_message(2, obstacles)), *set));
-  assert_int_equal(admission.rejected(), 1);
+  assert_false(receive(inputs, encoded(obstacles_message(2, obstacles)), *set));
+  assert_int_equal(inputs.rejected(), 1);
 }
 
 /// Each channel has its own order.
 void old_messages_are_dropped_but_not_counted_as_rejected(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   ArmState arm;
   Target target;
   const JointVector zero = JointVector::Zero(kJoints);
-  assert_true(admit(admission, encoded(arm_state_message(2000, zero, zero)), arm, 1.00));
-  assert_true(admit(admission, encoded(target_message(1000, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.00));
-  assert_true(admit(admission, encoded(obstacles_message(1500, {})), *set, 1.00));
-  assert_false(admit(admission, encoded(arm_state_message(2000, zero, zero)), arm, 1.01));
-  assert_false(admit(admission, encoded(target_message(999, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.01));
-  assert_false(admit(admission, encoded(obstacles_message(1500, {})), *set, 1.01));
-  assert_true(admit(admission, encoded(target_message(1001, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.02));
-  assert_int_equal(admission.rejected(), 0);
-  assert_string_equal(admission.last_reason(), "");
+  assert_true(receive(inputs, encoded(arm_state_message(2000, zero, zero)), arm, 1.00));
+  assert_true(receive(inputs, encoded(target_message(1000, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.00));
+  assert_true(receive(inputs, encoded(obstacles_message(1500, {})), *set, 1.00));
+  assert_false(receive(inputs, encoded(arm_state_message(2000, zero, zero)), arm, 1.01));
+  assert_false(receive(inputs, encoded(target_message(999, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.01));
+  assert_false(receive(inputs, encoded(obstacles_message(1500, {})), *set, 1.01));
+  assert_true(receive(inputs, encoded(target_message(1001, Vector3(0, 0, 1), Vector3(0, 0, 0))), target, 1.02));
+  assert_int_equal(inputs.rejected(), 0);
+  assert_string_equal(inputs.last_reason(), "");
 }
 
 /// Each sender reports only its own obstacles as the full set; the clock of one is behind.
 void the_obstacles_of_two_senders_all_count(void**) {
   for (const int64_t behind_us : {0, 15'000, 400'000}) {
     const auto set = std::make_unique<ObstacleSet>();
-    Admission admission(kJoints, Settings());
+    TestInputs inputs(kJoints, Settings());
     const obstacle_t one = test::sphere(1, Vector3(1, 0, 0), 0.1, Vector3(0, 0, 0)),
                      other = test::sphere(2, Vector3(0, 1, 0), 0.1, Vector3(0, 0, 0));
     int accepted = 0;
@@ -199,7 +201,7 @@ void the_obstacles_of_two_senders_all_count(void**) {
       const double now_s = 1.0 + 0.02 * turn;
       const auto utime = static_cast<int64_t>(now_s * 1e6);
       const auto receive = [&](int64_t at_us, const obstacle_t& obstacle, double at_s) {
-        if (!admit(admission, encoded(obstacles_message(at_us, {obstacle})), *set, at_s)) return;
+        if (!receive(inputs, encoded(obstacles_message(at_us, {obstacle})), *set, at_s)) return;
         ++accepted;
         check(turn == 0 || set->count == 2, "%ld us behind, turn %d: %d obstacles", behind_us, turn, set->count);
       };
@@ -207,13 +209,13 @@ void the_obstacles_of_two_senders_all_count(void**) {
       receive(utime + 10'000 - behind_us, other, now_s + 0.01);
     }
     check(accepted >= 100, "%d accepted", accepted);
-    assert_int_equal(admission.rejected(), 0);
+    assert_int_equal(inputs.rejected(), 0);
   }
 }
 
 void no_message_allocates_after_the_first_of_its_kind(void**) {
   const auto set = std::make_unique<ObstacleSet>();
-  Admission admission(kJoints, Settings());
+  TestInputs inputs(kJoints, Settings());
   ArmState arm;
   Target target;
   const JointVector zero = JointVector::Zero(kJoints);
@@ -227,11 +229,11 @@ void no_message_allocates_after_the_first_of_its_kind(void**) {
   for (int i = 0; i < 3; ++i) {
     const int64_t before = test::allocation_count();
     const bool good =
-        admit(admission, arms[i], arm) && admit(admission, targets[i], target) && admit(admission, sets[i], *set);
+        receive(inputs, arms[i], arm) && receive(inputs, targets[i], target) && receive(inputs, sets[i], *set);
     Bytes& broken = sets[i];
     broken[30] ^= 0xff;
     broken[19] ^= 1;
-    admission.admit(broken.data(), broken.size(), 0.0, *set);
+    inputs.receive(broken.data(), broken.size(), 0.0, *set);
     const int64_t allocations = test::allocation_count() - before;
     assert_true(good);
     if (i > 0) check(allocations == 0, "%ld allocations in round %d", allocations, i);
