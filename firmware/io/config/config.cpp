@@ -170,8 +170,7 @@ void read_dialect(YamlSection& root, Config& config) {
   root.choice("dialect", dialect, {"sidestep", "iiwa"});
   if (dialect != "iiwa") return;
   if (config.model.arm.joints != kIiwaJoints)
-    root.fail("dialect",
-              fmt::format("iiwa needs an arm with {} joints, this one has {}", kIiwaJoints, config.model.arm.joints));
+    root.fail("dialect", fmt::format("iiwa is for {} joints, the arm has {}", kIiwaJoints, config.model.arm.joints));
   config.dialect = Dialect::kIiwa;
   config.model.settings.start_guard_s = kIiwaStartGuard_s;
   config.channels.arm_state = "IIWA_STATUS";

@@ -4,28 +4,10 @@
 #include <vector>
 
 #include "firmware/control/cycle.h"
+#include "firmware/io/lcm/channels.h"
 #include "firmware/io/lcm/dialect.h"
 
 namespace sidestep {
-
-/// LCM channel names; config section `channels:`.
-struct Channels {
-  std::string target = "TARGET";
-  std::string obstacles = "OBSTACLES";
-  std::string arm_state = "ARM_STATE";
-  std::string arm_command = "ARM_COMMAND";
-  std::string controller_status = "CONTROLLER_STATUS";
-  std::string loop_timing = "LOOP_TIMING";
-};
-
-constexpr size_t kMaxNeighbours = 16;
-
-/// Other arms in the same workspace; config section `neighbours:`. Links are told in one world frame.
-struct Neighbours {
-  std::string publish;              ///< channel for our own links; empty: they are not told
-  std::vector<std::string> listen;  ///< channels of the others' links
-  Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
-};
 
 /// Logs of the last seconds before a fault or a request; config section `blackbox:`.
 struct BlackboxSettings {
@@ -58,7 +40,7 @@ struct Config {
   Channels channels;
   Neighbours neighbours;
   BlackboxSettings blackbox;
-  std::string file;  ///< this file and the overrides are its source
+  std::string file;  ///< what it was read from, with
   Overrides overrides;
 };
 
