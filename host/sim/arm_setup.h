@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/io/config/config.h"
+#include "firmware/io/lcm/channels.h"
 #include "host/sim/world.h"
 
 namespace sidestep::sim {

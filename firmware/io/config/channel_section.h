@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "firmware/io/config/config.h"
 #include "firmware/io/config/yaml_section.h"
+#include "firmware/io/lcm/channels.h"
 
 namespace sidestep {
 
