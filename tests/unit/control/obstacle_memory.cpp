@@ -15,7 +15,7 @@ namespace {
 constexpr double kSpeedBound_mps = 2.0, kMemory_s = 0.3, kPeriod_s = 0.01;
 
 Obstacle ball(int32_t id, const Vector3& position_m) {
-  return {id, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
+  return {id, Shape::kSphere, {position_m, position_m, 0.1}, Vector3::Zero(), Vector3::Zero()};
 }
 
 /// A sender of sets, one a period.
