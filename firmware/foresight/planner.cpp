@@ -85,9 +85,11 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
                            from.nearby.count, after_s, enough_m);
   };
   const double at_start_m = std::min(enough_m, clearance_at_m(guide.position_rad[0], 0.0) - kStartAllowance_m);
-  for (double after_s = 0.0; after_s <= settings.horizon_s; after_s += kSampleEvery_s) {
+  double after_s = 0.0;
+  while (after_s <= settings.horizon_s) {
     const double clear_m = clearance_at_m(point_of(guide, from.now_s + after_s).position_rad, after_s);
     if (clear_m < (after_s < kStartPhase_s ? at_start_m : enough_m)) return false;
+    after_s += kSampleEvery_s;
   }
   return true;
 }

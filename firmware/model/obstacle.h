@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Values as in obstacle_t. To add a shape: a value and a maker here; its core and one case in proximity.cpp, which is
-/// the only place of the controller that chooses a computation by shape; its size in reported_obstacle()
+/// Values as in obstacle_t. To add a shape: a value, a maker and its inflation_m() here; its core and one case in
+/// proximity.cpp, the only place that chooses a distance computation by shape; its size in reported_obstacle()
 /// (control/validation.cpp) and its encoding in io/lcm/obstacle_encoder.cpp.
 enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
 

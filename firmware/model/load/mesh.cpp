@@ -89,7 +89,7 @@ std::string find_mesh(const std::string& name, const std::string& urdf_file,
   if (const std::string file = "file://"; starts_with(name, file)) return name.substr(file.size());
   const std::string package = "package://";
   if (!starts_with(name, package)) {
-    if (const std::string found = find_upwards(folder_of(urdf_file), name); !found.empty()) return found;
+    if (std::string found = find_upwards(folder_of(urdf_file), name); !found.empty()) return found;
     throw std::runtime_error(fmt::format("mesh '{}' is in no folder from that of the URDF upwards", name));
   }
   const fs::path whole = name.substr(package.size());
