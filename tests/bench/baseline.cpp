@@ -1,4 +1,6 @@
 #include "tests/bench/baseline.h"
+#include "firmware/base/bounded_list.h"
+#include "firmware/model/clearance.h"
 
 #include <algorithm>
 #include <limits>

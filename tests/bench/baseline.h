@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "firmware/control/cycle.h"
+#include "firmware/model/proximity.h"
 
 namespace sidestep::bench {
 

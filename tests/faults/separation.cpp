@@ -2,6 +2,7 @@
 #include <deque>
 #include <memory>
 
+#include "firmware/model/clearance.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/random.h"

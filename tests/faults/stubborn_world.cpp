@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "firmware/control/obstacle_memory.h"
+#include "firmware/model/kinematics.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -112,7 +113,7 @@ void an_obstacle_that_jumps_counts_at_both_positions(void**) {
   const auto send = [&](const Vector3& centre_m) {
     loop.obstacles->count = 0;
     loop.add_sphere(centre_m, Vector3::Zero(), 0.1);
-    obstacle_memory->complete(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
+    obstacle_memory->add_remembered(*loop.obstacles, loop.model.settings.period_s(), loop.now_s());
     loop.cycle();
     return loop.last.report.clearance_m;
   };

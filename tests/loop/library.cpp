@@ -1,5 +1,6 @@
 // The controller as a library: the same control cycle behind a header without dependencies.
 #include "firmware/library/sidestep.h"
+#include "firmware/model/kinematics.h"
 
 #include <cmath>
 #include <memory>

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "firmware/model/clearance.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"

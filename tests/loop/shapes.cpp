@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "firmware/model/clearance.h"
 #include "host/sim/truth.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/base/realtime.h"
+#include "firmware/control/command_stream.h"
 #include "firmware/model/velocity_range.h"
 
 namespace sidestep::test {

@@ -29,7 +29,7 @@ void the_newest_value_can_be_read_repeatedly(void**) {
   for (int value = 1; value < 100; ++value) {
     buffer.draft() = value;
     if (value > 1) assert_int_equal(buffer.latest(), value - 1);  // a draft is not yet posted
-    buffer.post();
+    buffer.publish();
     assert_int_equal(buffer.latest(), value);
     assert_int_equal(buffer.latest(), value);
   }
@@ -40,7 +40,7 @@ void values_never_read_are_overwritten_by_newer_ones(void**) {
   for (int round = 0; round < 50; ++round) {
     for (int value = 0; value <= round; ++value) {
       buffer.draft() = 100 * round + value;
-      buffer.post();
+      buffer.publish();
     }
     assert_int_equal(buffer.latest(), 100 * round + round);
   }
@@ -49,11 +49,11 @@ void values_never_read_are_overwritten_by_newer_ones(void**) {
 void a_value_that_was_read_stays_unchanged_while_others_are_posted(void**) {
   TripleBuffer<int> buffer;
   buffer.draft() = 7;
-  buffer.post();
+  buffer.publish();
   const int& read = buffer.latest();
   for (int value = 8; value < 20; ++value) {
     buffer.draft() = value;
-    buffer.post();
+    buffer.publish();
     assert_int_equal(read, 7);
   }
   assert_int_equal(buffer.latest(), 19);
@@ -65,7 +65,7 @@ void two_threads_see_whole_values_in_order(void**) {
   std::thread writer([&] {
     for (int64_t value = 1; !done; ++value) {
       buffer.draft().words.fill(value);
-      buffer.post();
+      buffer.publish();
     }
   });
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);

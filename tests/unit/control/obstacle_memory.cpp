@@ -185,7 +185,7 @@ void a_full_set_of_jumping_obstacles_is_bounded_and_allocates_nothing(void**) {
   assert_int_equal(scene.set->count, kMaxObstacles);
   obstacles.resize(1000);
   assert_int_equal(scene.send(obstacles), kMaxObstacles - 1000);
-  assert_int_equal(scene.set->obstacle_memory, kMaxObstacles - 1000);
+  assert_int_equal(scene.set->remembered, kMaxObstacles - 1000);
   assert_int_equal(test::allocation_count() - before, 0);
 }
 

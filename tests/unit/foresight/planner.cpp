@@ -133,7 +133,7 @@ void a_plan_keeps_the_limits_of_the_joints(void**) {
     const double dt_s = 1e-3;
     for (double at_s = guide.time_s[0]; at_s < guide.end_s(); at_s += dt_s) {
       const GuidePoint now = point_of(guide, at_s), next = point_of(guide, at_s + dt_s);
-      const JointVector acceleration_radps2 = (next.stream.velocity_radps - now.velocity_radps) / dt_s;
+      const JointVector acceleration_radps2 = (next.velocity_radps - now.velocity_radps) / dt_s;
       assert_true((now.position_rad.array() >= limits.lower_rad.array() - 1e-9).all());
       assert_true((now.position_rad.array() <= limits.upper_rad.array() + 1e-9).all());
       assert_true((now.velocity_radps.cwiseAbs().array() <= 0.9001 * limits.velocity_radps.array()).all());

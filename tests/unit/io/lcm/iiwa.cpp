@@ -31,8 +31,8 @@ void a_status_becomes_an_arm_state(void**) {
   ArmState state;
   assert_true(receive(iiwa_status(0, measured_rad, velocity_radps, commanded_rad), state));  // Drake's time starts at 0
   assert_int_equal(state.utime, 0);
-  check_near(state.stream.position_rad, measured_rad, 0);
-  check_near(state.stream.velocity_radps, velocity_radps, 0);
+  check_near(state.position_rad, measured_rad, 0);
+  check_near(state.velocity_radps, velocity_radps, 0);
   check_near(state.held_rad, commanded_rad, 0);
 }
 

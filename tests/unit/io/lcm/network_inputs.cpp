@@ -53,8 +53,8 @@ void an_arm_state_arrives_as_it_was_sent(void**) {
     ArmState state;
     assert_true(receive(inputs, encoded(arm_state_message(123456789, q_rad, qd_radps)), state));
     assert_int_equal(state.utime, 123456789);
-    check_near(state.stream.position_rad, q_rad, 0);
-    check_near(state.stream.velocity_radps, qd_radps, 0);
+    check_near(state.position_rad, q_rad, 0);
+    check_near(state.velocity_radps, qd_radps, 0);
     assert_int_equal(inputs.rejected(), 0);
     assert_string_equal(inputs.last_reason(), "");
   }
@@ -108,7 +108,7 @@ void spheres_and_capsules_arrive_as_they_were_sent(void**) {
     const obstacle_t sphere = random_obstacle(random, obstacle_t::SPHERE),
                      capsule = random_obstacle(random, obstacle_t::CAPSULE);
     assert_true(receive(inputs, encoded(obstacles_message(trial, {sphere, capsule})), *set));
-    assert_int_equal(set->count - set->obstacle_memory, 2);
+    assert_int_equal(set->count - set->remembered, 2);
     const Obstacle &a = set->obstacles[0], &b = set->obstacles[1];
     assert_int_equal(a.id, sphere.id);
     check_near(a.capsule.start, vector(sphere.position), 0);
@@ -200,13 +200,13 @@ void the_obstacles_of_two_senders_all_count(void**) {
     for (int turn = 0; turn < 100; ++turn) {
       const double now_s = 1.0 + 0.02 * turn;
       const auto utime = static_cast<int64_t>(now_s * 1e6);
-      const auto receive = [&](int64_t at_us, const obstacle_t& obstacle, double at_s) {
+      const auto send = [&](int64_t at_us, const obstacle_t& obstacle, double at_s) {
         if (!receive(inputs, encoded(obstacles_message(at_us, {obstacle})), *set, at_s)) return;
         ++accepted;
         check(turn == 0 || set->count == 2, "%ld us behind, turn %d: %d obstacles", behind_us, turn, set->count);
       };
-      receive(utime, one, now_s);
-      receive(utime + 10'000 - behind_us, other, now_s + 0.01);
+      send(utime, one, now_s);
+      send(utime + 10'000 - behind_us, other, now_s + 0.01);
     }
     check(accepted >= 100, "%d accepted", accepted);
     assert_int_equal(inputs.rejected(), 0);
