@@ -10,16 +10,39 @@ LOG      ?= $(shell ls -t $(BUILD)/runs/*-realtime.lcmlog 2>/dev/null | head -1)
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
 .DEFAULT_GOAL := all
 
-PYTHON   := $(BUILD)/venv/bin/python
-SITE      = $(wildcard $(BUILD)/venv/lib/python3*/site-packages)
-# Eigen at -O2 makes gcc see uninitialised values where there are none.
-CXXFLAGS := -std=c++17 -O2 -g1 -pthread -Wall -Wextra -Wpedantic -Wshadow -Wno-maybe-uninitialized -Werror
-# The same objects go into the programs and into the library, which shows no more than its header does.
-CXXFLAGS += -fPIC -fvisibility=hidden
-# make sanitize: which sanitizers to build with. The typed subscriptions of LCM's C++ binding are what they must not see.
-CXXFLAGS += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
-INCLUDES  = -I. -isystem $(BUILD)/lcm -isystem /usr/include/eigen3 -isystem $(SITE)/cmeel.prefix/include
-LIBS     := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl -lyaml-cpp -lconsole_bridge -lspdlog -lfmt -llcm
+# The virtual environment's Python, and its wheel's headers of eiquadprog.
+PYTHON   ?= $(BUILD)/venv/bin/python
+EIQUADPROG_INCLUDE ?= $(wildcard $(BUILD)/venv/lib/python3*/site-packages/cmeel.prefix/include)
+# no: install nothing, everything needed is there (packagers).
+SETUP    ?= yes
+
+# The caller may set CXX, CPPFLAGS, CXXFLAGS, LDFLAGS and LDLIBS. CXXFLAGS come last, so that another -O counts.
+# The same objects go into the programs and into the library, which exports only what its header declares.
+FLAGS     = -std=c++17 -O2 -g1 -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow $(GCC_FLAGS)
+# make sanitize: which sanitizers to build with. LCM's C++ binding casts its typed subscriptions in a form that vptr and
+# null report.
+FLAGS    += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
+# Eigen at -O2 makes gcc report uninitialised values where there are none. The parameters let gcc's memory grow to
+# 500 MB before it looks for garbage, which takes a tenth of its time.
+GCC_FLAGS = $(if $(findstring clang,$(CXX)),,-Wno-maybe-uninitialized \
+              --param ggc-min-expand=300 --param ggc-min-heapsize=500000)
+FLAGS    += $(CXXFLAGS)
+WERROR   := $(if $(filter true,$(CI)),-Werror)
+
+# The flags of packages from pkg-config, which is asked once, when the first file is compiled, else Debian's.
+PKG_CONFIG ?= pkg-config
+package   = $(or $(shell $(PKG_CONFIG) $(1) $(2) 2>/dev/null),$(3))
+PACKAGES  = $(eval PACKAGES := $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(call package,--cflags,eigen3,-I/usr/include/eigen3) \
+              $(call package,--cflags,spdlog fmt,-DSPDLOG_COMPILED_LIB -DSPDLOG_FMT_EXTERNAL) $(call package,--cflags,yaml-cpp) $(call package,--cflags,lcm))))$(PACKAGES)
+INCLUDES  = -I. -isystem $(BUILD)/lcm $(PACKAGES) -isystem $(EIQUADPROG_INCLUDE)
+LIBS      = $(eval LIBS := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl $(call package,--libs,yaml-cpp,-lyaml-cpp) -lconsole_bridge \
+              $(call package,--libs,spdlog fmt,-lspdlog -lfmt) $(call package,--libs,lcm,-llcm))$(LIBS)
+COMPILE   = $(CXX) $(CPPFLAGS) $(FLAGS) $(WERROR) $(INCLUDES)
+LINK      = $(CXX) $(FLAGS) $(LDFLAGS)
+
+# host/setup/precompiled.h, compiled once; only gcc reads the result. PRECOMPILED=no: every file is compiled by itself.
+PRECOMPILED ?= $(if $(SANITIZE)$(findstring clang,$(CXX)),no,yes)
+HEADERS  := $(if $(filter yes,$(PRECOMPILED)),$(BUILD)/obj/precompiled.h)
 
 sources   = $(filter-out %/main.cpp,$(shell find $(1) -name '*.cpp'))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
@@ -32,9 +55,9 @@ CAMPAIGN := $(call objects,$(call sources,host/campaign))
 SUPPORT  := $(call objects,$(wildcard tests/support/*.cpp))
 TESTS    := $(patsubst %.cpp,$(BUILD)/%,$(shell find tests/unit tests/loop tests/faults -name '*.cpp'))
 FAULTS   := $(filter $(BUILD)/tests/faults/%,$(TESTS))
-# What the fuzzers look at.
-FUZZED   := $(call objects,$(call sources,firmware/base firmware/model firmware/io/config) \
-              $(wildcard firmware/control/*.cpp) $(filter-out %/wire.cpp,$(wildcard firmware/io/lcm/*.cpp)))
+# The code under the fuzzers.
+FUZZED   := $(call objects,$(filter-out %/command_line.cpp %/wire.cpp, \
+              $(call sources,firmware/base firmware/model firmware/io/config firmware/control firmware/io/lcm)))
 FUZZERS  := $(patsubst tests/%.cpp,$(BUILD)/%,$(wildcard tests/fuzz/*.cpp))
 BENCH    := $(call objects,$(wildcard tests/bench/*.cpp))
 PROGRAMS := $(BUILD)/controller $(BUILD)/sim $(BUILD)/campaign $(BUILD)/replay $(BUILD)/relay $(BUILD)/arm-check
@@ -48,27 +71,27 @@ SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
 
-run: all ## play SCENARIO (default paper-c) in real time, then the table and the figures
+run: all ## play SCENARIO (default paper-c) in real time, then print a table and draw the figures
 	@$(PYTHON) host/tools/play.py host/scenarios/$(SCENARIO).yaml
 
-test: all $(READY).test $(TESTS) ## run every test; ends with one line: N passed, N failed
+test: all $(READY).test $(TESTS) ## run all tests; the last line is: N passed, N failed
 	@$(PYTHON) tests/run.py $(TESTS)
 
 ##@ Hardening
 
-faults: all $(READY).test $(FAULTS) ## the fault tests TIMES (10) in a row; what each injects: tests/faults/README.md
+faults: all $(READY).test $(FAULTS) ## run the fault tests TIMES (10) times; tests/faults/README.md lists the faults
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## Pinocchio, 100 witnessed scenes with arms of others, Drake's iiwa in the loop (10 min)
+peers-test: all $(BUILD)/.python-peers ## compare with Pinocchio, play 100 witnessed scenes with other arms and Drake's iiwa (10 min)
 	@$(PYTHON) tests/peers/kinematics.py
 	@$(PYTHON) tests/peers/iiwa.py
 	@$(PYTHON) tests/peers/scenes.py
 
-fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan for SECONDS (60) each
+fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and UBSan, SECONDS (60) each
 	@$(MAKE) $(FUZZERS)
 	@tests/fuzz/run $(or $(SECONDS),60)
 
-sanitize: all $(READY).test ## all tests under ASan and UBSan, those with threads under TSan
+sanitize: all $(READY).test ## run all tests under ASan and UBSan, those with threads under TSan
 	@MAKEFLAGS= tests/sanitize
 
 arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm64 in build/arm64, run the unit tests under qemu
@@ -76,72 +99,80 @@ arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm
 
 ##@ Building
 
+setup: $(READY) $(READY).test $(READY).lint ## only install what is missing: Debian packages and build/venv (SETUP=no: no target does)
+
 all: $(PROGRAMS) ## set up what is missing and build the programs
 
-campaign: all ## the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
+campaign: all ## run the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
-bench: $(BUILD)/bench ## CPU time of a control cycle beside the bare computation
+bench: $(BUILD)/bench ## measure the CPU time of a control cycle and of the baseline computation
 	@$(BUILD)/bench
 
-figures: all ## figures of all scenarios of one arm, both laws, and the trade-off over the paper's gains
+figures: all ## draw the figures of all one-arm scenarios with both laws, and the trade-off over the paper's gains
 	@$(PYTHON) host/tools/figures.py
 
-timing: all $(READY).timing ## the real-time loop beside cyclictest, idle and under CPU stress, SECONDS (30) each
+timing: all $(READY).timing ## measure the real-time loop and cyclictest, idle and under CPU load, SECONDS (30) each
 	@$(PYTHON) host/tools/timing.py --duration $(or $(SECONDS),30)
 
-soak: all $(READY).timing ## one controller for SECONDS (3600) while its simulator is killed at random moments
+soak: all $(READY).timing ## run one controller for SECONDS (3600) and kill its simulator at random times
 	@$(PYTHON) host/tools/soak.py --duration $(or $(SECONDS),3600)
 
 ##@ Installing
 
-install: all $(SHARED) ## programs, library, manual pages, service: below PREFIX (/usr/local), with DESTDIR before it
+install: all $(SHARED) ## install programs, library, manual pages and service below DESTDIR and PREFIX (/usr/local)
 	@BUILD=$(BUILD) host/install/install
 
-uninstall: all $(SHARED) ## remove what the same `make install` made
+uninstall: all $(SHARED) ## remove what `make install` with the same PREFIX installed
 	@BUILD=$(BUILD) host/install/install undo
 
-deb: all $(SHARED) $(READY).deb ## the same as a Debian package, build/sidestep_VERSION_ARCHITECTURE.deb
+deb: all $(SHARED) $(READY).deb ## build a Debian package, build/sidestep_VERSION_ARCHITECTURE.deb
 	@BUILD=$(BUILD) host/install/deb
 
-install-test: all $(SHARED) $(READY).test $(READY).deb $(READY).install ## install, package and example, tried outside the source tree
+install-test: all $(SHARED) $(READY).test $(READY).deb $(READY).install ## test the installation, the package and the example outside the source tree
 	@tests/install
 
-##@ Looking
+##@ Viewing
 
-view: all $(VIEW) ## SCENARIO live in the browser, again and again until Ctrl-C
+view: all $(VIEW) ## play SCENARIO live in the browser, repeated until Ctrl-C
 	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml
 
-view-test: all $(VIEW) ## the same in headless Chromium; examines a screenshot, build/figures/view.png
+view-test: all $(VIEW) ## check a screenshot of the view in headless Chromium, build/figures/view.png
 	@$(PYTHON) tests/view/picture.py
 
-spy: $(BUILD)/types.jar ## lcm-spy with the types decoded
+spy: $(BUILD)/types.jar ## start lcm-spy, which decodes the message types
 	@java -cp $(SPY):$< lcm.spy.Spy
 
-report: all ## LOG (any lcm-logger log of a run; default: that of the last `make run`) as one page, build/report.html
+report: all ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)
 	@$(PYTHON) host/tools/report.py $(or $(LOG),no-run-yet) -o $(BUILD)/report.html
 
 ##@ Checking
 
-lint: all $(READY).lint ## clang-format, clang-tidy and cppcheck
+lint: all $(READY).lint ## check all sources with clang-format, clang-tidy and cppcheck
 	@host/setup/lint
 
-clean: ## remove what was built, but not the virtual environment, runs and figures
-	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/*.a $(BUILD)/*.jar \
+clean: ## remove what was built; keep the virtual environment, runs and figures
+	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/*.a $(BUILD)/*.jar \
 	  $(SHARED) $(BUILD)/stage $(BUILD)/deb $(BUILD)/*.deb $(BUILD)/shlibdeps
 
-help: ## this list
+help: ## print this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z0-9-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' Makefile
 
-.PHONY: all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
+.PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
+ifeq ($(SETUP),no)
+$(READY): ;
+$(READY).%: ;
+$(BUILD)/.python-%: ;
+else
 $(READY): host/setup/debian.txt host/setup/python.txt
+	@mkdir -p $(@D)
 	@host/setup/debian build
-	@test -x $(PYTHON) || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
+	@test -x $(BUILD)/venv/bin/python || { echo "set-up: making the virtual environment $(BUILD)/venv"; python3 -m venv $(BUILD)/venv; }
 	@echo "set-up: Python packages of host/setup/python.txt"
-	@$(PYTHON) -m pip install -q --disable-pip-version-check -r host/setup/python.txt
+	@$(BUILD)/venv/bin/python -m pip install -q --disable-pip-version-check -r host/setup/python.txt
 	@touch $@
 
 $(READY).%: host/setup/debian.txt | $(READY)
@@ -150,15 +181,16 @@ $(READY).%: host/setup/debian.txt | $(READY)
 
 $(BUILD)/.python-%: host/setup/python-%.txt | $(READY)
 	@echo "set-up: Python packages of $<"
-	@$(PYTHON) -m pip install -q --disable-pip-version-check -r $<
+	@$(BUILD)/venv/bin/python -m pip install -q --disable-pip-version-check -r $<
 	@touch $@
+endif
 
 $(BUILD)/%/.sysroot: host/setup/debian.txt host/setup/sysroot | $(READY)
 	@host/setup/sysroot $* $(@D)/sysroot
 	@touch $@
 
 # Debian's lcm-spy script passes an option that its Java no longer knows.
-$(BUILD)/types.jar: $(WIRE) $(READY).spy
+$(BUILD)/types.jar: $(WIRE) | $(READY).spy
 	@rm -rf $(BUILD)/lcm/java && lcm-gen -j --jpath $(BUILD)/lcm/java $(LCM_TYPES)
 	@javac -nowarn -cp $(SPY) $$(find $(BUILD)/lcm/java -name '*.java')
 	@jar cf $@ -C $(BUILD)/lcm/java .
@@ -169,12 +201,25 @@ $(WIRE): $(LCM_TYPES) | $(READY)
 	lcm-gen -p --ppath $(BUILD)/lcm/python $(LCM_TYPES)
 	@touch $@
 
-$(BUILD)/obj/%.o: %.cpp $(WIRE) | $(READY)
+# Changes when the flags do: then everything is compiled again.
+$(BUILD)/.flags: always | $(READY)
+	@mkdir -p $(@D)
+	@echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' | cmp -s - $@ || echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' >$@
+
+$(BUILD)/obj/precompiled.h: host/setup/precompiled.h | $(READY)
+	@mkdir -p $(@D)
+	@cp $< $@
+
+$(BUILD)/obj/precompiled.h.gch: $(BUILD)/obj/precompiled.h $(BUILD)/.flags
+	@echo "c++ host/setup/precompiled.h"
+	@$(COMPILE) -x c++-header $< -o $@
+
+$(BUILD)/obj/%.o: %.cpp $(WIRE) $(BUILD)/.flags $(HEADERS:=.gch) | $(READY)
 	@mkdir -p $(@D)
 	@echo "c++ $<"
-	@$(CXX) $(CXXFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
+	@$(COMPILE) $(HEADERS:%=-include %) -MMD -MP -c $< -o $@
 
-# These need cmocka, which the programs do not.
+# Only the tests need cmocka.
 $(SUPPORT) $(TESTS:$(BUILD)/%=$(BUILD)/obj/%.o): | $(READY).test
 
 $(BUILD)/libfirmware.a: $(FIRMWARE)
@@ -186,42 +231,42 @@ $(BUILD)/lib%.a:
 	@rm -f $@ && $(AR) rcs $@ $^
 
 $(BUILD)/controller: $(BUILD)/obj/firmware/main.o $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
+	@$(LINK) $^ -lfcl -lccd $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd $(LIBS) -o $@
+	@$(LINK) $^ -lfcl -lccd $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
-$(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+$(BUILD)/relay: $(BUILD)/obj/host/relay/main.o $(BUILD)/librelay.a $(BUILD)/libfirmware.a
+	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/arm-check: $(BUILD)/obj/host/arm_check/main.o $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) $^ $(LIBS) -o $@
+	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
 
-# The library for processes of others: firmware/library/sidestep.h is all that can be seen of it.
+# The library for other processes. It exports only what firmware/library/sidestep.h declares.
 $(SHARED): $(BUILD)/obj/firmware/library/controller.o $(BUILD)/libfirmware.a
-	@$(CXX) $(CXXFLAGS) -shared -Wl,-soname,$(@F) -Wl,--no-undefined -Wl,--as-needed $^ $(LIBS) -o $@
+	@$(LINK) -shared -Wl,-soname,$(@F) -Wl,--no-undefined -Wl,--as-needed $^ $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/bench: $(BENCH) $(LIBRARIES)
-	@$(CXX) $(CXXFLAGS) $^ -lfcl -lccd -lcmocka $(LIBS) -o $@
+	@$(LINK) $^ -lfcl -lccd -lcmocka $(LIBS) $(LDLIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)
-	@$(CXX) $(CXXFLAGS) $(filter %.o %.a,$^) -lfcl -lccd -lcmocka $(LIBS) -o $@
+	@$(LINK) $(filter %.o %.a,$^) -lfcl -lccd -lcmocka $(LIBS) $(LDLIBS) -o $@
 
-FUZZFLAGS = $(filter-out -Werror -Wno-maybe-uninitialized,$(CXXFLAGS)) -fno-sanitize-recover=all
+FUZZ = clang++-14 $(filter-out $(GCC_FLAGS),$(FLAGS)) -fno-sanitize-recover=all
 $(BUILD)/fuzz/obj/%.o: %.cpp $(WIRE)
 	@mkdir -p $(@D)
 	@echo "clang++ $<"
-	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer-no-link,address,undefined $(INCLUDES) -MMD -MP -c $< -o $@
+	@$(FUZZ) -fsanitize=fuzzer-no-link,address,undefined $(CPPFLAGS) $(INCLUDES) -MMD -MP -c $< -o $@
 
 $(FUZZERS): $(BUILD)/fuzz/%: $(BUILD)/fuzz/obj/tests/fuzz/%.o $(FUZZED:$(BUILD)/%=$(BUILD)/fuzz/%)
-	@clang++-14 $(FUZZFLAGS) -fsanitize=fuzzer,address,undefined $^ $(LIBS) -o $@
+	@$(FUZZ) -fsanitize=fuzzer,address,undefined $(LDFLAGS) $^ $(LIBS) $(LDLIBS) -o $@
 
 .SECONDARY:
 -include $(shell find $(BUILD)/obj $(BUILD)/fuzz -name '*.d' 2>/dev/null)

@@ -1,10 +1,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
 
+#include "firmware/base/command_line.h"
 #include "firmware/io/config/config.h"
 #include "firmware/io/loop/loop.h"
 
@@ -32,13 +32,12 @@ struct Arguments {
   bool lockstep = false;
 };
 
-void describe(CLI::App& app, Arguments& arguments) {
+void describe(sidestep::CommandLine& app, Arguments& arguments) {
   app.add_option("--config", arguments.config, "YAML file of the robot, such as lwa3.yaml");
-  app.add_option("--law", arguments.overrides.law, "the law, over the configuration's")
-      ->check(CLI::IsMember({"sidestep", "paper"}));
+  app.add_option("--law", arguments.overrides.law, "the law, over the configuration's").one_of({"sidestep", "paper"});
   app.add_option("--rate", arguments.overrides.rate_hz, "cycles a second, over the configuration's")
-      ->type_name("HZ")
-      ->check(CLI::Range(10.0, 2000.0));
+      .type_name("HZ")
+      .range(10.0, 2000.0);
   app.add_flag("--lockstep", arguments.lockstep, "one cycle for every arm state, on the arm's clock");
   app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM's own)");
   app.add_option("--urdf", arguments.overrides.urdf, "robot description, over the configuration's");
@@ -74,16 +73,12 @@ int run(const Arguments& arguments) {
 int start(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("controller"));
   spdlog::set_pattern("%n: %v");
-  CLI::App app{
+  sidestep::CommandLine app{
       "Sidestep controller: steers a redundant arm to a moving target while the whole arm keeps clear of "
       "moving obstacles."};
   Arguments arguments;
   describe(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   catch_signals();
   return run(arguments);
 }

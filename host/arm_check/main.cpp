@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
 #include <map>
 #include <sstream>
 
+#include "firmware/base/command_line.h"
 #include "firmware/control/types/settings.h"
 #include "firmware/model/arm.h"
 #include "firmware/model/kinematics.h"
@@ -98,14 +98,14 @@ void print_poses(const Arm& arm) {
   }
 }
 
-void describe(CLI::App& app, Arguments& arguments) {
-  app.add_option("urdf", arguments.urdf, "robot description")->required();
-  app.add_option("--base", arguments.base, "base link")->required();
-  app.add_option("--tip", arguments.tip, "tip link, the tool")->required();
+void describe(CommandLine& app, Arguments& arguments) {
+  app.add_option("urdf", arguments.urdf, "robot description").required();
+  app.add_option("--base", arguments.base, "base link").required();
+  app.add_option("--tip", arguments.tip, "tip link, the tool").required();
   app.add_option("--package-path", arguments.meshes.package_path, "folder in which package:// is looked for first")
-      ->allow_extra_args(false);
+      .one_value_at_a_time();
   app.add_option("--capsules-per-mesh", arguments.meshes.capsules_per_mesh, "most capsules for one mesh (default 3)")
-      ->check(CLI::Range(1, 8));
+      .range(1, 8);
   app.add_flag("--fk", arguments.forward_kinematics,
                "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
   app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse it.");
@@ -132,15 +132,13 @@ int run(const Arguments& arguments) {
 }  // namespace sidestep
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  sidestep::CommandLine app{
       "Shows what the controller makes of a URDF: joints, limits, the capsules around the links, what is odd."};
   sidestep::Arguments arguments;
   sidestep::describe(app, arguments);
   try {
-    app.parse(argc, argv);
+    if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
     return sidestep::run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {
     std::cerr << "arm-check: " << error.what() << "\n";
     return 2;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <thread>
 
+#include "firmware/base/command_line.h"
 #include "firmware/base/find_file.h"
 #include "firmware/io/config/config.h"
 #include "host/campaign/config_name.h"
@@ -30,39 +32,36 @@ struct Options {
   std::vector<std::string> merge;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
                  "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
-      ->capture_default_str();
+      .show_default();
   app.add_option("--count", options.count, "scenes of each family")
-      ->capture_default_str()
-      ->check(CLI::Range(1, static_cast<int>(kMostScenes)));
+      .show_default()
+      .range(1, static_cast<int>(kMostScenes));
   app.add_option("--seed", options.seed, "of the run; the scenes' own seeds follow from it")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1'000'000'000));
+      .show_default()
+      .range(0, 1'000'000'000);
   app.add_option("--law", options.law, "sidestep, paper, or plain (attraction only)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"sidestep", "paper", "plain"}));
-  app.add_option("--config", options.config, "of the controller and its arm (default: the LWA3's)")->type_name("FILE");
+      .show_default()
+      .one_of({"sidestep", "paper", "plain"});
+  app.add_option("--config", options.config, "of the controller and its arm (default: the LWA3's)").type_name("FILE");
   app.add_option("--urdf", options.urdf, "of the arm, over what the configuration says; alone: the rest is default")
-      ->type_name("FILE");
-  app.add_option("--base", options.base, "first link of the arm")->type_name("LINK");
-  app.add_option("--tip", options.tip, "last link of the arm")->type_name("LINK");
-  app.add_option("--shard", options.shard, "only every n-th scene, from the i-th on")
-      ->capture_default_str()
-      ->type_name("I/N");
-  app.add_option("--csv", options.csv, "one row per trial into this file")->type_name("FILE");
-  app.add_option("--jobs", options.jobs, "threads")->capture_default_str()->check(CLI::Range(1, 256));
+      .type_name("FILE");
+  app.add_option("--base", options.base, "first link of the arm").type_name("LINK");
+  app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
+  app.add_option("--shard", options.shard, "only every n-th scene, from the i-th on").show_default().type_name("I/N");
+  app.add_option("--csv", options.csv, "one row per trial into this file").type_name("FILE");
+  app.add_option("--jobs", options.jobs, "threads").show_default().range(1, 256);
   app.add_flag("--quiet", options.quiet, "no progress");
   app.add_flag("--smoothness", options.smoothness, "also tell how smooth the commands were");
   app.add_flag("--no-cpu", options.no_cpu, "leave the CPU times out; the rest is the same in every run");
   app.add_option("--replay", options.replay, "write this one scene as a scenario of the simulator")
-      ->type_name("FAMILY:SEED");
-  app.add_option("--output", options.output, "of --replay (default: standard output)")->type_name("FILE");
+      .type_name("FAMILY:SEED");
+  app.add_option("--output", options.output, "of --replay (default: standard output)").type_name("FILE");
   app.add_subcommand("merge", "the tables of all trials in these --csv files")
-      ->fallthrough()
-      ->add_option("files", options.merge, "CSV files")
-      ->required();
+      .add_option("files", options.merge, "CSV files")
+      .required();
   app.footer("Exit code: 0 done, 2 bad arguments or files, 130 interrupted.");
 }
 
@@ -152,14 +151,10 @@ int act(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sidestep's witnessed benchmark: random scenes, each of which provably has a solution.");
+  CommandLine app("Sidestep's witnessed benchmark: random scenes, each of which provably has a solution.");
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {

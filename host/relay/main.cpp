@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <lcm/lcm-cpp.hpp>
 #include <queue>
 
+#include "firmware/base/command_line.h"
 #include "host/relay/impairment.h"
 
 namespace {
@@ -73,28 +73,24 @@ class Relay {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Passes LCM messages from one network to another as a bad network would.");
+  sidestep::CommandLine app("Passes LCM messages from one network to another as a bad network would.");
   std::string from, to;
   std::vector<std::string> rules;
   unsigned seed = 1;
-  app.add_option("--from", from, "LCM network to listen on")->required()->type_name("URL");
+  app.add_option("--from", from, "LCM network to listen on").required().type_name("URL");
   app.add_option("--to", to, "LCM network to send to, another one; for the way back start a second relay")
-      ->required()
-      ->type_name("URL");
+      .required()
+      .type_name("URL");
   app.add_option("--rule", rules,
                  "CHANNEL:drop=SHARE,duplicate=SHARE,reorder=SHARE,corrupt=SHARE,delay=S or delay=S..S; CHANNEL is a "
                  "regular expression, the first rule that fits counts, other channels pass unharmed")
-      ->type_name("RULE");
-  app.add_option("--seed", seed, "of all chance")->capture_default_str();
+      .type_name("RULE");
+  app.add_option("--seed", seed, "of all chance").show_default();
   app.footer(
       "Example: relay --from udpm://239.255.76.67:7667 --to udpm://239.255.76.67:7668 \\\n"
       "               --rule 'ARM_STATE:drop=0.3,delay=0.005..0.05' --rule '.*:corrupt=0.01'\n"
       "Stops on Ctrl-C or SIGTERM. Exit codes: 0 stopped as asked, 2 wrong arguments or no network.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, [](int) { stop = true; });
   std::signal(SIGTERM, [](int) { stop = true; });
   try {

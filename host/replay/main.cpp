@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "firmware/base/command_line.h"
 #include "host/replay/replay.h"
 
 namespace {
@@ -24,18 +24,14 @@ int replay(const std::string& file, const std::string& config_file) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app(
+  sidestep::CommandLine app(
       "Runs the control cycles of a blackbox log again and compares the commands bit for bit. Needs the build and the "
       "configuration that wrote the log.");
   std::string file, config_file;
-  app.add_option("LOG", file, "a log that the controller has written")->required();
+  app.add_option("LOG", file, "a log that the controller has written").required();
   app.add_option("--config", config_file, "configuration of the controller (default: the file named in the log)");
   app.footer("Exit code: 0 all commands agree, 1 some differ, 2 bad arguments or files.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kAgrees : kBadInput;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   return replay(file, config_file);
 }
 

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <cmath>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
+#include "firmware/base/command_line.h"
 #include "host/sim/play.h"
 
 namespace {
@@ -17,11 +16,6 @@ enum ExitCode { kHeld = 0, kBroken = 1, kBadInput = 2, kNoController = 3, kInter
 
 std::atomic<bool> interrupted{false};
 
-/// CLI11's ranges let nan through.
-const CLI::Validator kNumber(
-    [](const std::string& text) { return std::isnan(std::strtod(text.c_str(), nullptr)) ? "is not a number" : ""; },
-    "");
-
 struct Options {
   std::string scenario, lcm_url, log_file, csv_file;
   bool lockstep = false;
@@ -29,23 +23,22 @@ struct Options {
   double patience_s = 30.0;
 };
 
-void declare(CLI::App& app, Options& options) {
-  app.add_option("--scenario", options.scenario, "what to play, such as paper-c.yaml")->required()->type_name("FILE");
+void declare(sidestep::CommandLine& app, Options& options) {
+  app.add_option("--scenario", options.scenario, "what to play, such as paper-c.yaml").required().type_name("FILE");
   app.add_flag(
       "--lockstep", options.lockstep,
       "play on the arm's clock: deterministic, as fast as both processes can go (controller: --lockstep, too)");
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)")
-      ->type_name("URL");
-  app.add_option("--log", options.log_file, "keep all messages in this lcm-logger log")->type_name("FILE");
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)").type_name("URL");
+  app.add_option("--log", options.log_file, "keep all messages in this lcm-logger log").type_name("FILE");
   app.add_option("--csv", options.csv_file,
                  "one row per control period into this file; of several arms into one with the arm's name before its "
                  "suffix each")
-      ->type_name("FILE");
+      .type_name("FILE");
   app.add_option("--wait", options.patience_s, "give up when the controller does not track within this time, s")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86400.0))
-      ->check(kNumber)
-      ->type_name("SECONDS");
+      .show_default()
+      .range(0.1, 86400.0)
+      .not_nan()
+      .type_name("SECONDS");
   app.add_flag("--quiet", options.quiet, "no live line");
   app.footer(
       "Exit code: 0 the scenario's expectations held, 1 broken, 2 bad arguments or files, 3 no controller, or lost,\n"
@@ -109,14 +102,10 @@ int play(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sidestep's simulator: plant, world and judge for a controller on the other end of LCM.");
+  sidestep::CommandLine app("Sidestep's simulator: plant, world and judge for a controller on the other end of LCM.");
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kHeld : kBadInput;
-  }
+  if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {
