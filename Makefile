@@ -148,8 +148,8 @@ report: all ## write build/report.html about LOG (an lcm-logger log; default: of
 
 ##@ Checking
 
-lint: all $(READY).lint ## check all sources with clang-format, clang-tidy and cppcheck
-	@host/setup/lint
+lint: $(WIRE) $(READY).lint ## check all sources with clang-format and cppcheck, the programs also with clang-tidy
+	@host/setup/lint $(INCLUDES)
 
 clean: ## remove what was built; keep the virtual environment, runs and figures
 	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/*.a $(BUILD)/*.jar \

@@ -1,7 +1,6 @@
-// The library headers that most files include, compiled once for the whole build (gcc only, see the Makefile). Each file
-// still includes what it uses: the sanitizer, arm64 and fuzz builds and clang-tidy read the files without this one.
-#pragma once
-
+// The library headers that most files include, compiled once for the whole build (gcc only, see the Makefile). Each
+// file still includes what it uses: the sanitizer, arm64 and fuzz builds and clang-tidy read the files without this
+// one.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>

@@ -50,6 +50,7 @@ Outcome parse(Values& values, std::vector<std::string> arguments) {
   line.footer("Exit codes: 0 or 2.");
   arguments.insert(arguments.begin(), "program");
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size());
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   const Capture out(std::cout), error(std::cerr);
   const std::optional<int> exit_code = line.parse(static_cast<int>(pointers.size()), pointers.data());
@@ -97,7 +98,7 @@ void help_is_printed_with_exit_code_0(void**) {
   Values values;
   const Outcome outcome = parse(values, {"--help"});
   assert_int_equal(outcome.exit_code.value_or(-1), 0);
-  for (const char* part : {"A program for tests.", "FILE", "--law", "{sidestep,paper}", "[sidestep]", "HZ",
+  for (const char* part : {"A program for tests.", "FILE", "--law", "{sidestep,paper}", "=sidestep", "HZ",
                            "merges files", "Exit codes: 0 or 2."})
     check(outcome.out.find(part) != std::string::npos, "no '%s' in '%s'", part, outcome.out.c_str());
   check(outcome.error.empty(), "%s", outcome.error.c_str());

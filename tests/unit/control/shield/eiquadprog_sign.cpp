@@ -31,7 +31,7 @@ void without_a_given_inverse_the_solver_returns_the_minimum(void**) {
 }
 
 void with_a_given_inverse_eiquadprog_1_3_2_returns_the_negated_minimum(void**) {
-  const Vector2 gradient(1.0, -2.0), negated_minimum = gradient;
+  const Vector2 gradient(1.0, -2.0), negated_minimum(1.0, -2.0);
   check_near_because(solve(gradient, true), negated_minimum, 1e-12,
                      "this eiquadprog is not 1.3.2 or behaves differently: firmware/control/shield/shield_qp.cpp must "
                      "no longer pass the negated gradient");
