@@ -80,8 +80,8 @@ Model model_of(const std::string& config_file, const Overrides& overrides, Contr
   const Config config = load_config(config_file, overrides);
   if (!config.neighbours.listen.empty())
     throw std::runtime_error(config_file +
-                             ": neighbours.listen: this process hears no channels; put the neighbours' "
-                             "links among the obstacles");
+                             ": neighbours.listen: this process has no channels; pass the neighbours' "
+                             "links as obstacles");
   Model model = config.model;
   if (foresight == Controller::Foresight::kOff) model.settings.foresight.enabled = false;
   return model;

@@ -20,7 +20,7 @@ constexpr int kMaxNear = 64;
 /// Distances between the arm and its obstacles at one instant.
 struct Clearance {
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
-  Proximity nearest_axis;  ///< least axis distance, over the moving shapes (paper-notes item 7: A_0 and d_0)
+  Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 
   /// Pairs of moving shapes within the Reach, unordered. The distance of a pair is the lesser of its surface distances
   /// now and at the closest approach. Of more than kMaxNear pairs those with the least distance are kept: a further

@@ -5,7 +5,7 @@
 namespace sidestep::campaign {
 
 /// The benchmark's arm: the LWA3 from its modified (Craig) D-H table, seven joints, four capsules of one radius between
-/// five corners (base, shoulder, elbow, wrist, tool). Paper Table 1 with the lengths of paper-notes.md, "The arm".
+/// five corners (base, shoulder, elbow, wrist, tool). Paper Table 1 with the lengths of docs/paper.md, "The arm".
 class Lwa3Arm : public JudgeArm {
  public:
   ArmPose pose(const Joints& q_rad) const override;

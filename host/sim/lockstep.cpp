@@ -50,7 +50,7 @@ bool exchange(size_t arm, Run& run, int64_t utime, SimWire& wire, const std::ato
 Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, const std::atomic<bool>& interrupted) {
   const int64_t period_us = simulation.scenario().period_us;
   const auto patience_us = static_cast<int64_t>(patience_s * 1e6);
-  const int64_t give_up_us = monotonic_us() + patience_us;
+  const int64_t deadline_us = monotonic_us() + patience_us;
   int64_t first_answered_us = 0;
   for (int64_t utime = kFirstUtime_us;; utime += period_us) {
     if (!simulation.tracked()) simulation.show_waiting();
@@ -62,7 +62,7 @@ Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, c
       if (!connected) return Outcome::kLost;
     }
     if (!simulation.answered()) {
-      if (monotonic_us() > give_up_us) return Outcome::kNeverTracked;
+      if (monotonic_us() > deadline_us) return Outcome::kNeverTracked;
       continue;
     }
     if (first_answered_us == 0) {

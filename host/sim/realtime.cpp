@@ -132,12 +132,12 @@ class RealTimeLoop {
 }  // namespace
 
 Outcome run_realtime(Simulation& simulation, SimWire& wire, double patience_s, const std::atomic<bool>& interrupted) {
-  const int64_t give_up_us = monotonic_us() + static_cast<int64_t>(patience_s * 1e6);
+  const int64_t deadline_us = monotonic_us() + static_cast<int64_t>(patience_s * 1e6);
   RealTimeLoop loop(simulation, wire);
   while (!interrupted) {
     loop.step();
     if (simulation.complete()) return Outcome::kDone;
-    if (!simulation.tracked() && monotonic_us() > give_up_us) return Outcome::kNeverTracked;
+    if (!simulation.tracked() && monotonic_us() > deadline_us) return Outcome::kNeverTracked;
     if (simulation.tracked() && loop.silent_us() > kLostAfter_us) return Outcome::kLost;
   }
   return Outcome::kInterrupted;

@@ -42,7 +42,7 @@ class Truth {
   /// Clearance of one obstacle to the nearest link, as in nearest().
   double clearance_m(const Obstacle& obstacle) const { return nearest({obstacle}).clearance_m; }
 
-  /// The paper's distance: from the centre of the obstacle to the axes of the moving links (paper-notes, "The arm").
+  /// The paper's distance: from the centre of the obstacle to the axes of the moving links (docs/paper.md, "The arm").
   /// The axis of a cylinder is the segment between its end faces, of a box or a mesh in its bounding box the one along
   /// the longest edge; a sphere is its centre.
   double axis_distance_m(const Obstacle& obstacle) const;

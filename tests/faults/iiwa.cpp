@@ -29,7 +29,7 @@ IiwaDriver start_driver() {
 }
 
 void check_driver(const IiwaDriver& driver) {
-  check(driver.stop_reason.empty(), "the driver gave up: %s", driver.stop_reason.c_str());
+  check(driver.stop_reason.empty(), "the driver stopped: %s", driver.stop_reason.c_str());
   check(driver.commands.violation().empty(), "%s", driver.commands.violation().c_str());
 }
 

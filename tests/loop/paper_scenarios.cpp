@@ -15,7 +15,7 @@ struct Scenario {
   Vector3 target_m, target_mps;
   bool has_obstacles;
   double duration_s;
-  double error_at_s;  ///< time at which the error in the table of paper-notes.md was taken
+  double error_at_s;  ///< time at which the error in the table of docs/paper.md was taken
 };
 
 const Scenario kA{"A", {0, 0.15, 1.0}, {0, 0.2, 0}, false, 2.3, 2.28};
@@ -79,7 +79,7 @@ struct Expected {
   double error_mm, least_axis_m, fastest_radps;  ///< least_axis_m 0: no obstacles
 };
 
-/// Checks one row of the table in paper-notes.md, "Force to velocity": errors within 1 % or 0.01 mm, distances to the
+/// Checks one row of the table in docs/paper.md, "Force to velocity": errors within 1 % or 0.01 mm, distances to the
 /// last printed digit.
 void check_row(const char* reading, const PaperGains& gains, const std::vector<Expected>& row) {
   for (const Expected& expected : row) {

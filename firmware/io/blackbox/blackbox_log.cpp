@@ -62,7 +62,7 @@ class Log {
   void write(const std::string& channel, double at_s, const Packet& packet) {
     lcm::LogEvent event{0, static_cast<int64_t>((epoch_s_ + at_s) * 1e6), channel, static_cast<int32_t>(packet.size),
                         const_cast<uint8_t*>(packet.bytes)};
-    if (log_.writeEvent(&event) != 0) give_up();
+    if (log_.writeEvent(&event) != 0) fail();
   }
 
   void write(const RecordedCycle& cycle, const Messages& messages) {
@@ -79,7 +79,7 @@ class Log {
   }
 
   void finish() {
-    if (std::fflush(log_.getFilePtr()) != 0) give_up();
+    if (std::fflush(log_.getFilePtr()) != 0) fail();
   }
 
  private:
@@ -114,7 +114,7 @@ class Log {
     return true;
   }
 
-  [[noreturn]] void give_up() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
+  [[noreturn]] void fail() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }
 
   std::string file_;
   lcm::LogFile log_;

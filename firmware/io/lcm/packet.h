@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// The bytes of a message, owned by somebody else.
+/// The bytes of a message, without ownership.
 struct Packet {
   const uint8_t* bytes = nullptr;
   size_t size = 0;

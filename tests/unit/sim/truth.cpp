@@ -30,7 +30,7 @@ Obstacle ball(const Vector3d& position_m, double radius_m = 0.05) {
   return obstacle;
 }
 
-/// Shoulder, elbow, wrist and tool point by Craig's D-H convention (paper-notes, "The arm"), independent of the URDF.
+/// Shoulder, elbow, wrist and tool point by Craig's D-H convention (docs/paper.md, "The arm"), independent of the URDF.
 std::array<Vector3d, 4> stations(const JointVector& q_rad) {
   const double alpha_deg[] = {0, 90, -90, 90, -90, 90, -90}, d_m[] = {0.3, 0, 0.328, 0, 0.2765, 0, 0};
   std::array<Vector3d, 4> stations;

@@ -30,7 +30,7 @@ void a_resting_obstacle_pushes_straight_away(void**) {
 }
 
 void an_approaching_obstacle_pushes_along_its_relative_motion(void**) {
-  // eq (10) with V_obj (paper-notes item 3): 0.1 (1/0.1 - 1/0.2) = 0.5 along V_obj - V_tool, here (0.6, 0.8, 0).
+  // eq (10) with V_obj (docs/paper.md item 3): 0.1 (1/0.1 - 1/0.2) = 0.5 along V_obj - V_tool, here (0.6, 0.8, 0).
   const PaperGains gains = gains_of(0.0, 0.1);
   check_near(repulsion(gains, Vector3(-0.1, 0, 0), Vector3(3, 4, 0), kTool, kRest), Vector3(0.3, 0.4, 0), 1e-12);
   check_near(repulsion(gains, Vector3(-0.1, 0, 0), kRest, kTool, Vector3(-3, -4, 0)), Vector3(0.3, 0.4, 0), 1e-12);

@@ -178,7 +178,7 @@ void the_lwa3_file_holds_the_defaults(void**) {
   assert_string_equal(defaults.channels.controller_status.c_str(), "CONTROLLER_STATUS");
 }
 
-/// The values of paper-notes.md, "Parameters".
+/// The values of docs/paper.md, "Parameters".
 void the_lwa3_file_holds_the_documented_parameters_of_the_paper(void**) {
   const PaperGains g = load_config("firmware/config/lwa3.yaml", {}).model.settings.paper;
   const std::vector<double> actual = {

@@ -13,7 +13,7 @@ using test::Random;
 
 namespace {
 
-/// The chain of paper-notes.md, "The arm": Craig's convention, signs of alpha flipped, a = 0, then the tool.
+/// The chain of docs/paper.md, "The arm": Craig's convention, signs of alpha flipped, a = 0, then the tool.
 Eigen::Isometry3d craig(const JointVector& q_rad) {
   const double alpha_rad[] = {0, M_PI / 2, -M_PI / 2, M_PI / 2, -M_PI / 2, M_PI / 2, -M_PI / 2};
   const double d_m[] = {0.300, 0, 0.328, 0, 0.2765, 0, 0};
