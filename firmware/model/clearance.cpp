@@ -26,12 +26,12 @@ struct Links {
   Vector3 upper = -lower;
   double radius_m = 0.0;  // the largest of all shapes
 
-  Links(const Arm& arm, const LinkPoses& poses) {
-    for (const LinkShape& shape : arm.shapes) {
-      const Capsule capsule = transformed(poses, shape);
+  Links(const Arm& arm, const BoundedList<Capsule, kMaxShapes>& capsules) {
+    for (int s = 0; s < capsules.size(); ++s) {
+      const Capsule& capsule = capsules[s];
       const Vector3 axis = capsule.end - capsule.start;
       const double length2_m2 = axis.squaredNorm();
-      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, shape.body > 0});
+      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, arm.shapes[s].body > 0});
       lower = lower.cwiseMin(capsule.start).cwiseMin(capsule.end);
       upper = upper.cwiseMax(capsule.start).cwiseMax(capsule.end);
       radius_m = std::max(radius_m, capsule.radius_m);
@@ -57,9 +57,10 @@ double square(double x) {
 /// Computes a Clearance, obstacle by obstacle. One comparison of squared distances discards most pairs.
 class Gatherer {
  public:
-  Gatherer(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach, Clearance& clearance)
+  /// clearance.links has been filled.
+  Gatherer(const Arm& arm, const ObstacleView& view, const Reach& reach, Clearance& clearance)
       : arm_(arm),
-        links_(arm, poses),
+        links_(arm, clearance.links),
         view_(view),
         horizon_s_(reach.horizon_s),
         limit_m_(reach.range_m),
@@ -183,7 +184,8 @@ Obstacle ObstacleView::extrapolated(int index, double later_s) const {
 
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
-  Gatherer gatherer(arm, poses, view, reach, clearance);
+  for (const LinkShape& shape : arm.shapes) clearance.links.add(transformed(poses, shape));
+  Gatherer gatherer(arm, view, reach, clearance);
   for (int o = 0; o < view.reported(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
   for (int o = view.reported(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;

@@ -19,6 +19,9 @@ constexpr int kMaxNear = 64;
 
 /// Distances between the arm and its obstacles at one instant.
 struct Clearance {
+  /// The link shapes in the base frame, in the order of Arm::shapes, for the other computations of the cycle.
+  BoundedList<Capsule, kMaxShapes> links;
+
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
   Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 

@@ -81,12 +81,10 @@ class RowMaker {
         sustainable_(sustainable),
         range_(range),
         within_(is_within(range, sustainable)),
-        rows_(rows) {
-    for (const LinkShape& shape : input.arm.shapes) links_.add(transformed(input.poses, shape));
-  }
+        rows_(rows) {}
 
   void add_self(int a, int b) {
-    const Proximity pair = measure_pair(links_[a], links_[b]);
+    const Proximity pair = measure_pair(input_.clearance.links[a], input_.clearance.links[b]);
     const JointVector row = axes_.row(input_.arm.shapes[a].body, pair.on_arm, pair.normal) -
                             axes_.row(input_.arm.shapes[b].body, pair.on_obstacle, pair.normal);
     add_hard(row, least_mps(row, sustainable_), pair.distance_m - settings_.self_clearance_m, 0.0);
@@ -157,7 +155,6 @@ class RowMaker {
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const JointAxes axes_;
-  BoundedList<Capsule, kMaxShapes> links_;
   const VelocityRange& sustainable_;
   const VelocityRange& range_;
   const bool within_;  ///< range_ lies in sustainable_: then the least value of a row is no smaller there

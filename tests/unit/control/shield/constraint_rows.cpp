@@ -37,7 +37,9 @@ struct Scene {
   Clearance clearance;
   Pairs self_pairs;
 
-  explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {}
+  explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {
+    for (const LinkShape& shape : lwa3().shapes) clearance.links.add(transformed(poses, shape));
+  }
 
   void add(const Obstacle& obstacle) { set->obstacles[static_cast<size_t>(set->count++)] = obstacle; }
   RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {

@@ -58,7 +58,8 @@ struct Scene {
   ConstraintRows hard_rows() const { return make_rows(model().settings.shield, input(), sustainable, range).step; }
 
   void add(const Capsule& capsule, const Vector3& velocity_mps = Vector3::Zero()) {
-    set.obstacles[static_cast<size_t>(set.count)] = {set.count, Shape::kCapsule, capsule, velocity_mps, Vector3::Zero()};
+    set.obstacles[static_cast<size_t>(set.count)] = {set.count, Shape::kCapsule, capsule, velocity_mps,
+                                                     Vector3::Zero()};
     ++set.count;
   }
   /// One period: the arm moves at the shield's velocity, the obstacles at theirs.

@@ -85,7 +85,6 @@ void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void*
   const Model model = test::lwa3_model("sidestep");
   const auto nothing = std::make_unique<ObstacleSet>();
   const ObstacleView view{nothing.get(), 0.0, 0.0};
-  const Clearance clearance{};
   Random random(1);
   int met = 0;
   for (int trial = 0; trial < 60; ++trial) {
@@ -98,6 +97,7 @@ void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void*
       const JointVector nominal_radps = folding_nominal(model.arm, poses, model.self_pairs, least_m);
       check(least_m >= 0.0, "trial %d, cycle %d: %g m", trial, cycle, least_m);
       nearest_m = std::min(nearest_m, least_m);
+      const Clearance clearance = measure_clearance(model.arm, poses, view, {0.0, 0.0});
       const ShieldInput around{model.arm,        poses,      q_rad, last_radps, clearance, view,
                                model.self_pairs, last_radps, 0.01,  1.0};
       last_radps = shield(model.settings.shield, around, sustainable_range(model.arm.limits, q_rad, q_rad, kPeriod_s),

@@ -1,0 +1,182 @@
+#include "firmware/control/shield/evasion.h"
+
+#include <memory>
+
+#include "firmware/model/prediction.h"
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::Random;
+
+namespace {
+
+constexpr double kPeriod_s = 0.01;
+
+const Model& model() {
+  static const Model lwa3 = test::lwa3_model("sidestep");
+  return lwa3;
+}
+
+/// An arm at rest, and spheres that fly at points of its links.
+struct Scene {
+  JointVector q_rad, rest = JointVector::Zero(7), evasion_radps;
+  std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
+  LinkPoses poses;
+  ObstacleView view;
+  Clearance clearance;
+  VelocityRange range;
+  TaskJacobian jacobian;
+
+  explicit Scene(const JointVector& start_rad) : q_rad(start_rad), poses(forward_kinematics(model().arm, start_rad)) {
+    jacobian = tool_jacobian(poses, 3);
+    range = sustainable_range(model().arm.limits, q_rad, q_rad, kPeriod_s);
+    measure();
+  }
+
+  void measure() {
+    const ShieldSettings& settings = model().settings.shield;
+    view.set = set.get();
+    clearance = measure_clearance(model().arm, poses, view, {settings.range_m, settings.pass_horizon_s});
+  }
+
+  void add_sphere_toward(const Vector3& goal_m, const Vector3& from, double distance_m, double speed_mps) {
+    Obstacle& sphere = set->obstacles[static_cast<size_t>(set->count)];
+    sphere = sphere_obstacle(goal_m + distance_m * from, 0.05);
+    sphere.velocity_mps = -speed_mps * from;
+    sphere.id = set->count++;
+    measure();
+  }
+
+  ShieldInput input() const {
+    return {model().arm,
+            poses,
+            q_rad,
+            rest,
+            clearance,
+            view,
+            model().self_pairs,
+            evasion_radps,
+            kPeriod_s,
+            model().settings.shield.comfort_least_weight};
+  }
+  QpObjective objective() const {
+    const ShieldSettings& settings = model().settings.shield;
+    return {rest, jacobian, settings.tool_weight, settings.comfort_least_weight};
+  }
+  ConstraintRows rows() const { return make_rows(model().settings.shield, input(), range, range).plan; }
+  JointVector planned() const { return solve(rows(), range, objective()).velocity_radps; }
+  Plan evaded() const { return evade(model().settings.shield, input(), rows(), range, objective(), planned()); }
+
+  /// Least clearance until 0.2 s after the last closest approach while the arm accelerates to a velocity and keeps it,
+  /// integrated in steps of 1 ms and looked at every 70 ms, as the rollouts of the evasion do.
+  double least_clearance_m(const JointVector& velocity_radps) const {
+    const double dt_s = 0.001;
+    const JointLimits& limits = model().arm.limits;
+    const JointVector change = limits.acceleration_radps2 * dt_s;
+    JointVector q = q_rad, qd = rest;
+    double least_m = 1.0, last_s = 0.0;
+    for (const NearPair& pair : clearance.near)
+      if (pair.approach.distance_m < model().settings.shield.pass_clearance_m)
+        last_s = std::max(last_s, pair.approach.time_s);
+    for (int i = 1; i * dt_s <= last_s + 0.2; ++i) {
+      qd += (velocity_radps - qd).cwiseMax(-change).cwiseMin(change);
+      q = (q + qd * dt_s).cwiseMax(limits.lower_rad).cwiseMin(limits.upper_rad);
+      if (i % 70 != 0) continue;
+      least_m = clearance_after(model().arm, forward_kinematics(model().arm, q), set->obstacles.data(), set->count,
+                                i * dt_s, least_m);
+    }
+    return least_m;
+  }
+};
+
+/// A point on the axis of a random link that moves.
+Vector3 on_the_arm(const Scene& scene, Random& random) {
+  const auto& shapes = model().arm.shapes;
+  size_t s = 0;
+  while (shapes[s].body < 3) s = static_cast<size_t>(random.index(static_cast<int>(shapes.size())));
+  const Capsule link = transformed(scene.poses, shapes[s]);
+  return link.start + random.uniform(0.2, 0.8) * (link.end - link.start);
+}
+
+/// Scenes in which spheres arrive within pass_horizon_s.
+Scene threatened_scene(Random& random) {
+  Scene scene(random.configuration(model().arm, 0.7));
+  const double speed_mps = random.uniform(0.8, 2.0);
+  for (int i = random.index(2); i >= 0; --i)
+    scene.add_sphere_toward(on_the_arm(scene, random), random.direction(), speed_mps * random.uniform(0.3, 0.45),
+                            speed_mps);
+  return scene;
+}
+
+void without_an_approaching_obstacle_the_plan_stays(void**) {
+  Random random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    Scene scene(random.configuration(model().arm, 0.7));
+    const Vector3 from = random.direction();
+    scene.add_sphere_toward(on_the_arm(scene, random), from, 0.3, trial % 2 == 0 ? 0.0 : -1.0);
+    const JointVector planned = scene.planned();
+    const Plan plan = scene.evaded();
+    assert_false(plan.evading);
+    check_near(plan.velocity_radps, planned, 0);
+  }
+}
+
+void the_evasion_is_within_the_range_and_keeps_more_clearance_than_the_plan(void**) {
+  Random random(2);
+  int evasions = 0, improved = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    const Scene scene = threatened_scene(random);
+    const JointVector planned = scene.planned();
+    const Plan plan = scene.evaded();
+    assert_true((plan.velocity_radps.array() >= scene.range.lower_radps.array() - 1e-9).all());
+    assert_true((plan.velocity_radps.array() <= scene.range.upper_radps.array() + 1e-9).all());
+    if (!plan.evading) continue;
+    ++evasions;
+    const double hard_m = model().settings.shield.hard_clearance_m, integration_error_m = 0.005;
+    const double before_m = std::min(hard_m, scene.least_clearance_m(planned));
+    const double after_m = std::min(hard_m, scene.least_clearance_m(plan.velocity_radps));
+    check(after_m >= before_m - integration_error_m, "trial %d: %g m instead of %g m", trial, after_m, before_m);
+    improved += after_m > before_m + 0.005;
+  }
+  check(evasions > 100, "only %d evasions", evasions);
+  check(improved > evasions / 4, "only %d of %d evasions improve the clearance", improved, evasions);
+}
+
+/// The factor for the evasion of the previous cycle keeps the choice.
+void the_evasion_of_the_previous_cycle_is_kept(void**) {
+  Random random(3);
+  int evasions = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene = threatened_scene(random);
+    const Plan first = scene.evaded();
+    if (!first.evading) continue;
+    ++evasions;
+    scene.evasion_radps = first.velocity_radps;
+    const Plan second = scene.evaded();
+    assert_true(second.evading);
+    check_near(second.velocity_radps, first.velocity_radps, 0);
+  }
+  check(evasions > 30, "only %d evasions", evasions);
+}
+
+void equal_inputs_give_equal_evasions(void**) {
+  Random random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Scene scene = threatened_scene(random);
+    check_near(scene.evaded().velocity_radps, scene.evaded().velocity_radps, 0);
+  }
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(without_an_approaching_obstacle_the_plan_stays),
+      cmocka_unit_test(the_evasion_is_within_the_range_and_keeps_more_clearance_than_the_plan),
+      cmocka_unit_test(the_evasion_of_the_previous_cycle_is_kept),
+      cmocka_unit_test(equal_inputs_give_equal_evasions),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
