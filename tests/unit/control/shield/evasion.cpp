@@ -134,10 +134,10 @@ void the_evasion_is_within_the_range_and_keeps_more_clearance_than_the_plan(void
     assert_true((plan.velocity_radps.array() <= scene.range.upper_radps.array() + 1e-9).all());
     if (!plan.evading) continue;
     ++evasions;
-    const double hard_m = model().settings.shield.hard_clearance_m, integration_error_m = 0.005;
+    const double hard_m = model().settings.shield.hard_clearance_m, rollout_error_m = 0.02;
     const double before_m = std::min(hard_m, scene.least_clearance_m(planned));
     const double after_m = std::min(hard_m, scene.least_clearance_m(plan.velocity_radps));
-    check(after_m >= before_m - integration_error_m, "trial %d: %g m instead of %g m", trial, after_m, before_m);
+    check(after_m >= before_m - rollout_error_m, "trial %d: %g m instead of %g m", trial, after_m, before_m);
     improved += after_m > before_m + 0.005;
   }
   check(evasions > 100, "only %d evasions", evasions);
