@@ -9,13 +9,18 @@
 
 namespace sidestep {
 
-/// The stream of commands to the arm: started from the measured arm, continued from its own last command, ended at rest
-/// or when the arm can no longer be following it.
+/// The stream of commands to the arm. It starts from the measured arm, continues from its own last command, and ends at
+/// rest or when the arm cannot be following it any more.
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
-/// pushed, its following error (measured - commanded position) is reduced in addition: by the part beyond half of
-/// Settings::following_error_rad, and completely once the error exceeds following_error_rad. The correction keeps the
-/// joints' velocity and acceleration limits. Then the rate of the commanded position differs from the velocity.
+/// pushed, the commanded position also moves toward the measured one. Per joint, with the error
+/// e = measured - commanded position and F = Settings::following_error_rad, the part of e to be closed is
+///   0               for |e| <= F/2
+///   |e| - F/2       for F/2 < |e| <= F
+///   |e|             for |e| > F
+/// It is closed at the speed from which the joint can still stop within that distance. The sum of velocity and
+/// correction is the rate of the commanded position; the rate keeps the joint's velocity limit, and its change per
+/// cycle the acceleration limit.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
@@ -31,12 +36,14 @@ struct CommandStream {
 /// have come from the last command, or when the driver has just started.
 void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream);
 
-/// The first state of a new stream: at the position that the drives hold (else the measured one), with the velocity on
-/// which the reported one and the differentiated positions agree. arm_rate_radps: those differences, n x 1.
+/// The first state of a new stream: the position that the drives hold (else the measured one), and per joint the
+/// reported velocity or the difference quotient of the measured positions (arm_rate_radps, n x 1), whichever is
+/// smaller; 0 where their signs differ.
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream);
 
-/// Joint velocities allowed for the coming period, by all joint limits and the following error, for any arm position
-/// between commanded and measured.
+/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. The
+/// following error acts as a position limit: the command stays within following_error_rad of the measured position, so
+/// that an arm that is held in place stops it. The mode matters because the stream catches up only in modes that move.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
 /// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the
@@ -44,8 +51,8 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting);
 
-/// Whether commands are sent: the arm is followed by fresh states, and the mode commands it. In mode FAULT the stream
-/// runs until it is at rest.
+/// Whether the stream runs after this cycle. It starts with a fresh arm state that was received after the arm last
+/// stopped on its own. It runs in HOLD, TRACK and BRAKE, in FAULT until it is at rest, and not in WAIT.
 bool stream_continues(const CommandStream& stream, Mode mode, const MonitorResult& inputs);
 
 /// A velocity within the limits: one uniform scale for the velocity limits, which keeps the direction, then each joint

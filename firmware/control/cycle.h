@@ -18,7 +18,7 @@ struct State {
   ArmMonitor arm_monitor;              ///< input_monitor.h
   CommandStream stream;                ///< command_stream.h
   JointVector evasion_radps;           ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
-  std::optional<Vector3> planned_mps;  ///< commanded tool velocity of the last cycle, if it was in TRACK (paper's law)
+  std::optional<Vector3> planned_mps;  ///< commanded tool velocity of the last cycle; empty unless that was in TRACK
 };
 
 /// The report of one cycle, published as controller_status_t.
@@ -42,7 +42,7 @@ struct Report {
 };
 
 struct Result {
-  bool commanding = false;  ///< the command is to be sent; false while waiting and after a fault
+  bool commanding = false;  ///< the command is to be sent; false in WAIT, and in FAULT once the arm is at rest
   Command command;          ///< of size 0 before the first arm state
   Report report;
   State next;

@@ -10,7 +10,7 @@ namespace sidestep {
 /// Where values come from, which decides what the gate does after the plausibility check.
 enum class InputSource {
   kNetwork,    ///< messages: ordered by their sender's utime, obstacles remembered
-  kLockstep,   ///< the same, with the arm's utime as the clock of its receipt
+  kLockstep,   ///< the same; the receipt time of an arm state is its utime
   kCalls,      ///< function calls of the same process: in the order of the calls, obstacles remembered
   kRecording,  ///< values that a gate has accepted before, with what it remembered: plausibility only
 };
@@ -24,7 +24,8 @@ struct Verdict {
 };
 
 /// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
-/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). Does not throw and
+/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). Obstacles of a late
+/// set enter the memory. Does not throw and
 /// does not allocate. Large: lives on the heap.
 class InputGate {
  public:

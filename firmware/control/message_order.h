@@ -4,23 +4,24 @@
 
 namespace sidestep {
 
-/// Time between the sending of two messages, s: the difference of their utimes, but at most the time between their
-/// receipts plus slack_s, since no network delays a message longer than that. utime in microseconds.
+/// Time between the sending of two messages, s: the difference of their utimes (microseconds), but at most
+/// received_apart_s + slack_s. A larger difference is a jump of the sender's clock, not a delay of the network.
 double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s);
 
 /// Decides by utime whether a message of one channel is newer than all messages accepted before it.
 class MessageOrder {
  public:
-  /// Accepts a newer utime and drops a repeated one. Drops an older one, unless its sender has restarted: nothing was
-  /// accepted for `restart_s` (local receipt times, s), or it is the third in a row, increasing, that is older by more
-  /// than `restart_s`. A message that is merely late arrives between newer ones and is dropped.
+  /// Accepts a newer utime. Drops a repeated one, and an older one unless its sender has restarted. A restart is
+  /// assumed when nothing was accepted for restart_s, or when the third message in a row with increasing utimes is
+  /// older than the newest by more than restart_s: a late message of a running sender is followed by newer ones. now_s:
+  /// local time of receipt. restart_s: the timeout of the channel.
   bool accept(int64_t utime, double now_s, double restart_s);
 
   /// For a message that was not accepted: it is older than the newest one, not a repetition of it.
   bool is_late(int64_t utime) const { return any_ && utime < utime_; }
 
-  /// Time between the last two accepted messages, s: the larger of the times by receipt and by the sender's clock, the
-  /// latter with `restart_s` of slack. 0 for the first message.
+  /// Time between the last two accepted messages, s: the larger of the difference of the receipt times and
+  /// sent_apart_s(..., restart_s). 0 for the first message.
   double elapsed_s() const { return elapsed_s_; }
 
  private:

@@ -7,27 +7,29 @@
 
 namespace sidestep {
 
-/// Remembers obstacles at their previous positions for coast_s after a doubtful report:
+/// Keeps obstacles whose reports are doubtful for coast_s after their last good report:
 ///
-/// - An obstacle jumped: it is reported farther from its last position than it can have moved (the largest of the speed
-///   bound and its speeds before and after, times the elapsed time, plus 5 cm of measurement noise). Report and memory
-///   may both be wrong, so it also remains at its last position, at rest. The newest 64 jumps are remembered.
-/// - An obstacle vanished: it is no longer reported, because the sender lost sight of it or because two senders each
-///   report their own obstacles. It coasts on with its last velocity until it is reported again.
+/// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm
+/// (measurement
+///   noise). If it is reported farther away, the report may be wrong, so a copy also stays at the last position, at
+///   rest. The newest 64 jumps are kept.
+/// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
+///   channel alternate with their own obstacles. It moves on with its last velocity until it is reported again.
 ///
-/// Obstacles are matched by id; the k-th of several obstacles with one id matches the k-th with that id in the set
-/// before. The paper's law runs without this memory (coast_s = 0). Large: lives on the heap, like an ObstacleSet.
+/// Obstacles are matched by id; obstacles with the same id are matched in the order of the message. The paper's law
+/// runs without this memory (coast_s = 0). Large: lives on the heap, like an ObstacleSet.
 class ObstacleMemory {
  public:
-  /// speed_bound_mps: the speed that an obstacle may have beyond its reported velocity.
+  /// speed_bound_mps: the speed that any obstacle may have, whatever velocity is reported.
   ObstacleMemory(double speed_bound_mps, double coast_s) : speed_bound_mps_(speed_bound_mps), coast_s_(coast_s) {}
 
   /// Appends the remembered obstacles to a new set, under their ids, as far as the set has room (kMaxObstacles), and
   /// counts them in set.remembered. elapsed_s: since the set before. Work is bounded by n log n; nothing is allocated.
   void add_remembered(ObstacleSet& set, double elapsed_s, double now_s);
 
-  /// A set that was received too late to be the newest, by at most late_s. Its obstacles that the newest set does not
-  /// hold are remembered as vanished ones: another sender with a slower clock may report them.
+  /// A set with an older utime than the newest one. Its obstacles that the newest set does not hold are kept as
+  /// vanished ones: another sender, whose clock is behind, may report them. late_s: upper bound of the difference of
+  /// the clocks.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.

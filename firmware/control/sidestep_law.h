@@ -5,14 +5,14 @@
 
 namespace sidestep {
 
-/// Joint velocities away from the position limits, n x 1: -k_posture (deviation from the middle / half range)^3, which
-/// is small within the range and k_posture at a limit; 0 for a joint without limits.
+/// Joint velocities away from the position limits, n x 1: -k_posture r^3 rad, with r = -1 to 1 the position between the
+/// limits. The cube keeps it small within the range. 0 for a joint without limits.
 JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limits, const JointVector& q_rad);
 
 /// Our own law: the tool moves straight toward the target, at the target's velocity plus k_pos times the distance
 /// (clipped to v_max), through a damped inverse of the tool Jacobian. `preferred_radps`, n x 1, acts in the null space.
-/// The law does not consider obstacles; the shield does. (Repulsion in the nominal velocity was measured with the
-/// campaign: it only costs arrivals.)
+/// The law does not consider obstacles; the shield does. Repulsion here was tried on the
+/// witnessed scenes of host/campaign: it only lowered the share of arrivals.
 NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ struct InputStatus {
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s
   bool target_known = false;
   bool target_fresh = false;     ///< not older than timeouts.target_s
-  bool late = false;             ///< 3 or more cycles in a row were skipped
+  bool late = false;             ///< 3 or more cycles were skipped since the last one that ran in time
   bool stop = false;             ///< the process has been asked to end
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
@@ -28,23 +28,27 @@ struct Supervision {
   const char* message = "starting";
 };
 
-/// Law and shield choose the command; in all other modes commands brake or rest.
+/// HOLD and TRACK: law and shield choose the command. In all other modes the command brakes or rests.
 inline bool moves(Mode mode) {
   return mode == Mode::kHold || mode == Mode::kTrack;
 }
 
-/// The modes and their transitions. "Ready" means: arm state fresh, consistent for 0.5 s and not starting, no stop
-/// request, no foreign command, obstacles known and fresh. All times are timeouts of the configuration.
+/// The modes and their transitions. All ages and durations are timeouts of the configuration; their defaults are given.
+/// "Ready": the arm state is fresh (30 ms), consistent for 0.5 s and its driver is not starting; no stop request; no
+/// foreign command; obstacles are known and fresh (100 ms). In every cycle the first line that applies decides.
 ///
-///   WAIT         -> HOLD   ready
-///   HOLD        <-> TRACK  the target is fresh (250 ms); HOLD slows to rest and keeps avoiding obstacles
-///   HOLD, TRACK <-> BRAKE  arm state older than 30 ms, obstacles older than 100 ms, 3 cycles in a row skipped, a
-///   foreign
-///                          command or a stop request: every joint brakes at its acceleration limit
-///   HOLD, TRACK,
-///   BRAKE        -> FAULT  arm state older than 100 ms, arm state inconsistent, or a command that is not finite
-///   FAULT        -> HOLD   ready
-///   FAULT        -> WAIT   ready, but no obstacle set is known
+///   from                to     when
+///   WAIT                HOLD   ready
+///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms or inconsistent; a command that is not finite
+///   FAULT               HOLD   ready
+///   FAULT               WAIT   ready but for the obstacles: no set is known yet
+///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
+///                              3 cycles in a row skipped
+///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
+///   HOLD, TRACK, BRAKE  HOLD   otherwise
+///
+/// HOLD slows to rest and keeps avoiding obstacles. BRAKE slows every joint at its acceleration limit. It ends as soon
+/// as its cause has ended.
 Supervision next_mode(const Supervision& last, const InputStatus& status);
 
 }  // namespace sidestep

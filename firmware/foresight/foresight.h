@@ -11,12 +11,16 @@ class Foresight {
  public:
   explicit Foresight(const Model& model) : model_(model), rollout_(model), planner_(model) {}
 
-  /// One call per snapshot, of bounded work: at most two rollouts, or two plans. Every fifth call assesses the present
-  /// guide, and drops it if the law alone is better. While the assessment is not good, the other calls alternate
-  /// between a search for a candidate and its rollout; a candidate that costs at least 0.5 s less becomes the guide.
-  /// After more than 50 searches without a plan, the status is kWaiting if there is no guide and no arrival expected.
-  /// Returns the guide for the following cycles. A snapshot that is not tracking resets everything. The same sequence
-  /// of snapshots gives the same guides.
+  /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
+  /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
+  ///   - Every fifth call assesses: a rollout with the present guide, and one without. Without a guide at least 0.5 s
+  ///     cheaper, or not worse where the guide does not arrive either: the guide is dropped.
+  ///   - While the last forecast is not good, each other call either plans a candidate (plan_to_target(); if that fails
+  ///     and a collision is predicted, plan_retreat()), or, with a candidate from the call before, compares its rollout
+  ///     with the present guide's. A candidate that costs at least 0.5 s less becomes the guide.
+  ///   - After more than 50 plans without a guide to the target, with no guide and no arrival expected, the status is
+  ///     kWaiting, without knots.
+  /// A snapshot that is not tracking resets everything. The same sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
 
  private:

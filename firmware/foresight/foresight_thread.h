@@ -14,8 +14,8 @@ namespace sidestep {
 /// update within each submit(), so that runs are deterministic; then the caller does the work itself.
 class ForesightThread {
  public:
-  /// Call it from a thread without real-time priority, since the own thread inherits the priority. The model outlives
-  /// this.
+  /// To be called from a thread without real-time priority: the new thread inherits the priority of its creator. The
+  /// model outlives this.
   ForesightThread(const Model& model, bool lockstep);
   ~ForesightThread();
 

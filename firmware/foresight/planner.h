@@ -8,11 +8,11 @@ namespace sidestep {
 /// Searches for guides by random sampling: joint paths in time that keep clear of the obstacles at their present
 /// velocities.
 ///
-/// A guide leads from the present configuration at rest, possibly after a pause and through one intermediate
-/// configuration, to a goal configuration. Between two knots every joint moves with the profile 3u^2 - 2u^3
-/// (types/guide.h), as fast as 90 % of the velocity and acceleration limits allow. A guide is clear if the clearance of
-/// its configurations, sampled every 60 ms up to foresight.horizon_s, is at least foresight.clearance_m; in the first
-/// 0.5 s, at least 5 mm less than the lesser of that and the clearance at the start.
+/// A guide starts at the present configuration with zero velocity, although the arm may be moving, possibly after a
+/// pause and through one intermediate configuration, to a goal configuration. Between two knots every joint moves with
+/// the profile 3u^2 - 2u^3 (types/guide.h), as fast as 90 % of the velocity and acceleration limits allow. A guide is
+/// clear if the clearance of its configurations, sampled every 60 ms up to foresight.horizon_s, is at least
+/// foresight.clearance_m. In the first 0.5 s the limit is min(foresight.clearance_m, clearance at the start - 5 mm).
 class Planner {
  public:
   explicit Planner(const Model& model) : model_(model), random_(model.settings.foresight.seed) {}
@@ -20,9 +20,9 @@ class Planner {
   /// Restarts the random sequence from foresight.seed.
   void reset() { random_ = SplitMix64(model_.settings.foresight.seed); }
 
-  /// Six tries for a guide to a configuration that has the target kTargetCoast_s from now and is reached at least 1 s
-  /// before the horizon. Returns the clear one that arrives soonest, ForesightStatus::kGuided; without knots if no try
-  /// succeeds.
+  /// Six tries for a guide to a configuration with the tool at the target as predicted for kTargetCoast_s from now,
+  /// reached at least 1 s before the horizon. Returns the clear one that arrives soonest, ForesightStatus::kGuided;
+  /// without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
 
   /// Six tries for a guide to a configuration within 1 rad per joint where the arm stays clear up to the horizon.

@@ -32,7 +32,7 @@ struct Clearance {
 };
 
 /// The obstacles as they are known now: the newest set, its age, and the growth that covers what is uncertain. Indices
-/// from reported() on refer to the static obstacles of the configuration, which neither move nor grow.
+/// >= reported() are the surroundings of the configuration, which neither move nor grow.
 struct ObstacleView {
   const ObstacleSet* set = nullptr;                     ///< null: no set was received
   double age_s = 0.0;                                   ///< of the set
@@ -59,7 +59,7 @@ struct Reach {
 };
 
 /// Distances of all link shapes to all obstacles, extrapolated to now and grown. Takes time proportional to shapes x
-/// obstacles at most; an obstacle farther away than matters for any result takes one comparison. No allocation.
+/// obstacles at most; an obstacle too far away for any result takes one comparison. No allocation.
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach);
 
 }  // namespace sidestep

@@ -8,17 +8,21 @@
 
 namespace sidestep {
 
-/// Values as in obstacle_t. To add a shape: a value, a maker and its inflation_m() here; its core and one case in
-/// proximity.cpp, the only place that chooses a distance computation by shape; its size in reported_obstacle()
-/// (control/validation.cpp) and its encoding in io/lcm/obstacle_encoder.cpp.
+/// Values as in obstacle_t. To add a shape:
+///   - here: the value, a maker, and the core's data if the capsule does not hold it, with transformed(),
+///     extrapolated() and inflation_m();
+///   - model/proximity.cpp: its core (nearest points to a segment) and one case in with_core(), the only switch over
+///     shapes for distances, closest approaches and bounds;
+///   - control/validation.cpp: reported_obstacle() makes it from its size, plausible() checks new data;
+///   - lcmtypes/obstacle_t.lcm and io/lcm/message_decoder.cpp (static_assert), io/lcm/obstacle_encoder.cpp;
+///   - io/config/yaml_geometry.cpp for configurations and scenarios, library/sidestep.h for callers.
 enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
 
-/// An obstacle with its velocity at one instant, in the base frame. Its centre is the middle of the capsule's axis, and
-/// it turns about its centre.
+/// An obstacle with its velocity at one instant, in the base frame: a core, grown by inflation_m(). The core is a point
+/// (sphere), the segment capsule.start - capsule.end (capsule) or box_of() (box).
 ///
-/// Its surface lies at inflation_m() around its core: the point or segment `capsule.start`-`capsule.end` for a sphere
-/// or capsule, box_of() for a box. `capsule` encloses the obstacle whatever its shape; cheap tests use it alone. An
-/// obstacle whose `capsule.is_sphere()` is treated as that sphere.
+/// `capsule` encloses the obstacle whatever its shape; cheap tests use it alone. The obstacle's centre is the middle of
+/// the capsule's axis, and the obstacle turns about it. Where capsule.is_sphere(), the obstacle is treated as a sphere.
 struct Obstacle {
   int32_t id = 0;
   Shape shape = Shape::kSphere;
@@ -33,7 +37,7 @@ struct Obstacle {
 /// stack.
 struct ObstacleSet {
   int count = 0;
-  int remembered = 0;  ///< so many at the end of `count` are remembered obstacles, not reported ones
+  int remembered = 0;  ///< the last `remembered` of the `count` obstacles are not reported but remembered
   std::array<Obstacle, kMaxObstacles> obstacles;
 };
 
@@ -49,8 +53,8 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 /// The box of an obstacle of Shape::kBox, without its inflation: edges ordered from the longest to the shortest.
 Box box_of(const Obstacle& obstacle);
 
-/// By how much the core of the obstacle has to be grown, m: the radius of a sphere or capsule; 0 for a box as reported,
-/// and the growth of `capsule.radius_m` since for a box that was grown.
+/// Distance from the core to the surface, m: the radius of a sphere or capsule; for a box the amount by which
+/// capsule.radius_m was increased since the box was made (0 as reported).
 double inflation_m(const Obstacle& obstacle);
 
 /// Velocity of the obstacle's material at a point, m/s.

@@ -20,17 +20,18 @@ struct Proximity {
 
 /// The closest approach of a moving obstacle to a link at rest.
 struct ClosestApproach {
-  double time_s = 0.0;                ///< from now; 0 if the obstacle is not coming closer
-  double distance_m = 0.0;            ///< between surfaces at that time
-  double axis_distance_m = 0.0;       ///< between axes at that time; infinite for a box
+  double time_s = 0.0;           ///< from now; 0 if the obstacle is not coming closer
+  double distance_m = 0.0;       ///< between surfaces at that time
+  double axis_distance_m = 0.0;  ///< from the link's axis to the core at that time; not computed (infinite) for a box
   Vector3 on_arm = Vector3::Zero();   ///< the link axis' nearest point at that time, m
-  Vector3 normal = Vector3::UnitZ();  ///< unit, from the obstacle to the arm at that time; if head_on, across the path
+  Vector3 normal = Vector3::UnitZ();  ///< unit, from the obstacle to the arm at that time; if head_on, any direction
+                                      ///< perpendicular to the path
   bool head_on = false;  ///< the path passes the link's axis within 5 mm: passing on the side of -normal is as good
 };
 
-/// The Proximity (without its indices) of a link to a point or segment grown by radius_m, from their nearest points,
-/// the gap = points.a - points.b and its norm. Up to a gap of 1e-9 m the normal is a direction across the link (a
-/// sphere: z).
+/// The Proximity (without its indices) of a link to a point or segment grown by radius_m. points: the nearest points;
+/// gap = points.a - points.b; gap_m = |gap|. Where gap_m <= 1e-9 the normal is some direction perpendicular to the
+/// link, for a sphere z.
 inline Proximity proximity_of(const Capsule& link, double radius_m, const NearestPoints& points, const Vector3& gap,
                               double gap_m) {
   Proximity pair;
@@ -52,18 +53,19 @@ Proximity measure_pair(const Capsule& link, const Capsule& obstacle);
 /// The same for an obstacle of any shape.
 Proximity measure_pair(const Capsule& link, const Obstacle& obstacle);
 
-/// Distance between surfaces, m. Exact, as of measure_pair(), where it is below enough_m; else a lower bound of it that
-/// is itself at least enough_m. The bound is the distance to the enclosing capsule, which is much cheaper for a box.
+/// Distance between surfaces, m. A distance below enough_m is exact, as of measure_pair(). Otherwise the result is a
+/// value between enough_m and the distance: that to the enclosing capsule, which is much cheaper for a box.
 double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double enough_m);
 
-/// By how much the obstacle's core can be nearer than the axis of its enclosing capsule, m: 0 for a sphere or capsule,
-/// the radius of `capsule` for a box. Lets a caller discard pairs by the distance between axes alone.
+/// A bound, m: distance to the core >= distance to the axis of the enclosing capsule - core_reach_m(). 0 for a sphere
+/// or capsule, the radius of `capsule` for a box. A caller can discard pairs by the distance between axes alone.
 double core_reach_m(const Obstacle& obstacle);
 
 /// The closest approach within horizon_s, from now = measure_pair(link, obstacle). The obstacle translates at the
 /// velocity of its point now.on_obstacle. Of a sphere or capsule only that point, grown by the radius, is followed:
-/// exact for the point. A box is followed as a whole, at no more than 5 instants up to horizon_s; the nearest of these
-/// and of `now` is returned, so that the true closest approach may be nearer, but never farther.
+/// exact for a sphere; other points of a capsule may come nearer. A box is followed as a whole, at no more than 5
+/// instants up to horizon_s; the nearest of these and of `now` is returned, so that the true closest approach may be
+/// nearer, but never farther.
 ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
                                          double horizon_s);
 

@@ -4,7 +4,7 @@
 
 namespace sidestep {
 
-/// The joint velocities that the limits allow for the coming period, n x 1 each.
+/// A range of joint velocities, n x 1 each; lower <= upper.
 struct VelocityRange {
   JointVector lower_radps;
   JointVector upper_radps;
@@ -17,9 +17,8 @@ struct VelocityRange {
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s);
 
-/// The sustainable range: velocity_range() without the limit on the change from the last velocity, which is what the
-/// joints can reach and keep for a while. Contains the velocity limits and the stopping distance to the position
-/// limits.
+/// The sustainable range: as velocity_range(), without the limit on the change from the last velocity. It holds the
+/// velocities that the joints can reach and keep: velocity limits, and stopping before the position limits.
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 

@@ -4,20 +4,22 @@
 
 namespace sidestep {
 
-/// Tiers of constraint rows. d is a surface distance, d' its rate, all with the obstacle's own motion included.
+/// Tiers of constraint rows. Notation: d surface distance of a pair, n unit normal from the obstacle to the link, a =
+/// n^T J_p the row with J_p the Jacobian of the link's nearest point, v = n^T (velocity of the obstacle's nearest
+/// point) its approach speed. So d' = a q' - v. Gains and clearances are those of ShieldSettings. All b are capped at 3
+/// m/s, since penetration or a short time would demand more than any arm can do.
 ///
-///   hard     Distance barrier of every pair of a link with an obstacle or (self_clearance) with another link:
-///              d' >= -hard_gain (d - hard_clearance), and the arm's own part of d' never faster than it can brake
-///              within d - hard_clearance, at half of the joints' deceleration (the rest is left for other rows). Of an
-///              approaching obstacle only a share counts: all of its speed where its closest approach would be at most
-///              hard_clearance, none where it will pass at pass_clearance or farther.
-///   pass     Closest approach of a moving obstacle within pass_horizon, at constant velocity: the link leaves the
-///              obstacle's path sideways, so that their least distance becomes pass_clearance in the remaining time
-///              (less pass_reaction, at least 0.05 s). Where it already exceeds pass_clearance: a barrier with
-///              pass_gain.
-///   comfort  d' >= -comfort_gain (d - comfort_clearance).
-///
-/// Demanded speeds are capped at 3 m/s: penetration or a short remaining time would demand more than any arm can do.
+///   hard     b = max(k v - hard_gain r, min(k v, 0) - v_stop(r)) with r = d - hard_clearance; for r <= 0 only the
+///   first.
+///            k is 1 for a receding obstacle; for an approaching one it falls linearly from 1 to 0 as its predicted
+///            least distance m rises from hard_clearance to pass_clearance. v_stop(r): the largest speed that can be
+///            braked within r, one period of travel included, with the deceleration 1/2 sum |a_j| acceleration_limit_j
+///            (the other half is left for other rows). Self pairs: r = d - self_clearance, v = 0.
+///   pass     for a moving obstacle whose closest approach within pass_horizon is at time t with distance m, and a
+///   taken
+///            there: m < pass_clearance: b = (pass_clearance - m) / max(t - pass_reaction, 0.05 s);
+///            else b = -pass_gain (m - pass_clearance).
+///   comfort  b = v - comfort_gain (d - comfort_clearance)
 enum class Tier { kHard, kPass, kComfort };
 constexpr int kTiers = 3;
 
@@ -26,14 +28,13 @@ struct ConstraintRow {
   JointVector row;  ///< a_i, n x 1, m: rate of the distance over the joint velocities
   double bound;     ///< b_i, m/s
   Tier tier;
-  double other_bound =
-      0.0;  ///< pass: the bound for -row, to pass the obstacle on the other side, m/s; 0: no other side
+  double other_bound = 0.0;  ///< pass: b for -row, which passes the obstacle on its other side, m/s; 0: none
 };
 
 constexpr int kMaxRows = 56;
 
-/// The rows that some velocity within the range violates. Of more than kMaxRows rows those with the largest violation
-/// by their worst velocity of the range are kept.
+/// The rows that some velocity within the range violates. Of more than kMaxRows rows, of whatever tier, those with the
+/// largest b - min (a q') over the range are kept.
 using ConstraintRows = BoundedList<ConstraintRow, kMaxRows>;
 
 /// The rows of the two programmes of a cycle.

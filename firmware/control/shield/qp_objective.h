@@ -20,8 +20,9 @@ struct QpSolution {
   double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the hard rows were solved in rounds
 };
 
-/// Slack scales sigma_t of the hard and the pass tier, m/s. Fixed: their ratio to each other and to 1 rad/s decides the
-/// order of the tiers, not how far rows are violated.
+/// Slack scales sigma_t of the hard and the pass tier, m/s. A row of tier t that is active with multiplier lambda is
+/// violated by sigma_t^2 lambda. The hard scale is so small that a hard row that can be met is violated by less than
+/// kNegligibleSlack_mps.
 constexpr double kHardSlackScale_mps = 1e-3;
 constexpr double kPassSlackScale_mps = 3e-2;
 
@@ -32,7 +33,7 @@ inline double slack_scale_mps(const QpObjective& objective, Tier tier) {
   return 1.0 / std::sqrt(objective.comfort_weight);
 }
 
-/// A hard slack below this counts as zero: the hard rows are met and no further round is solved.
+/// A hard slack up to this counts as zero: the hard rows are met, and no further round is solved.
 constexpr double kNegligibleSlack_mps = 1e-4;
 
 }  // namespace sidestep

@@ -23,7 +23,8 @@ struct ShieldInput {
   double comfort_weight;  ///< weight of the comfort tier in this cycle, s2/m2
 };
 
-/// The joint velocity that the arm is to reach, and whether evasion chose it (evasion.h).
+/// The result of the first programme: the joint velocity that the arm is to reach, before acceleration limits, and
+/// whether evasion replaced it (evasion.h).
 struct Plan {
   JointVector velocity_radps;
   bool evading = false;
@@ -31,7 +32,7 @@ struct Plan {
 
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
-  double hard_slack_mps = 0.0;  ///< by how much the worst hard row is violated; 0 where all hard rows are met
+  double hard_slack_mps = 0.0;  ///< s_hard: by how much the worst hard row is violated; 0: all are met
   Plan plan;
 };
 
@@ -39,23 +40,24 @@ struct ShieldResult {
 /// nominal velocity u that keeps the clearances.
 ///
 ///   min   1/2 |q' - u|^2 + w/2 |J (q' - u)|^2 + sum over tiers t of 1/2 (s_t / sigma_t)^2
-///   s.t.  a_i q' + s_t(i) >= b_i    every constraint row i, of tier t(i)      (constraint_rows.h)
+///   s.t.  a_i q' + s_t(i) >= b_i    every constraint row i, of tier t(i)      (constraint_rows.h; at most 56 rows)
 ///         s_t >= 0                  one slack for all rows of a tier, m/s
 ///         l <= q' <= h              the range of joint velocities             (model/velocity_range.h)
 ///
 ///   u        nominal joint velocity, n x 1, rad/s
-///   J        tool Jacobian, 3 x n or 6 x n;  w = ShieldSettings::tool_weight: with it, obstacles are avoided in the
-///            null space of the tool's task where possible
+///   J        tool Jacobian, 3 x n or 6 x n;  w = ShieldSettings::tool_weight, 1/m2, with 1 rad of the angular rows
+///            counted as 1 m. With it, obstacles are avoided in the null space of the tool's task where possible
 ///   a_i      1 x n: rate at which the distance of pair i grows with q';  b_i: least such rate, m/s
-///   sigma_t  slack scale of tier t, m/s: the smaller, the more a violation costs. hard 1e-3, pass 3e-2,
-///            comfort 1 / sqrt(comfort_weight) of the cycle
+///   sigma_t  slack scale of tier t, m/s: a violation s costs 1/2 (s / sigma_t)^2. hard 1e-3, pass 3e-2,
+///            comfort 1 / sqrt(comfort_weight) of the cycle: 2.2 at the target, 3e-2 far from it by default
 ///
-/// It is solved twice. First for the plan: all three tiers, within `sustainable`, the velocities that the joints can
-/// sustain; evasion may replace the solution by a better one. Then for the coming period: u is the plan, w = 0, only
-/// the hard tier, within `range`, which includes the acceleration limits.
+/// Two programmes a cycle. The first gives the plan: all three tiers, within `sustainable`; evasion may replace its
+/// solution. The second gives the velocity of the coming period: u is the plan, w = 0, only the hard tier, within
+/// `range`, which includes the acceleration limits.
 ///
-/// Where the hard rows cannot all be met, the solution with the least common slack is found first; the rows that need
-/// this slack are then frozen at it, and the remaining hard rows are met as well as possible, in at most 3 solves.
+/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows: then
+/// each hard row that is active at the slack is replaced by a q' >= b - s_hard, without slack, and the programme is
+/// solved again for the other hard rows. A programme takes at most 3 such rounds.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps);
 

@@ -6,15 +6,16 @@
 
 namespace sidestep {
 
-/// Solves the programme of shield.h exactly where at most three constraint rows are active at the solution and no bound
-/// of the range is; without the tool's cost (w = 0) the nominal velocity is first clipped to the range. Returns nothing
-/// in every other case: more active rows, an active bound, a hard slack above kNegligibleSlack_mps, or no active set
-/// found within 6 changes. Then shield_qp.h needs the general solver. With H = I + w J^T J and active rows A, b:
+/// Solves the programme of shield.h exactly in two cases, and returns nothing in all others:
+///   - at the solution at most three constraint rows are active and no bound of the range is;
+///   - w = 0, and u clipped to the range meets all rows (with H = I the joints are independent, so clipping is exact).
+/// It also returns nothing with a hard slack above kNegligibleSlack_mps, or if 6 changes of the active set do not find
+/// the solution. With H = I + w J^T J and the active rows A, b:
 ///
 ///   stationarity     q' = u + H^-1 A^T lambda                      lambda >= 0, one multiplier per active row
 ///   slack            s_t = sigma_t^2 sum of lambda_i over the active rows i of tier t
 ///   active rows      (A H^-1 A^T + S) lambda = b - A u             S_ij = sigma_t^2 for two rows of tier t, else 0
-///   Woodbury         H^-1 = I - J^T (J J^T + I/w)^-1 J
+///   Woodbury         H^-1 = I - J^T (J J^T + I/w)^-1 J             for w > 0
 std::optional<QpSolution> solve_small_active_set(const ConstraintRows& rows, const VelocityRange& range,
                                                  const QpObjective& objective);
 

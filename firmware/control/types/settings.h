@@ -34,7 +34,7 @@ struct SidestepGains {
   double k_ori_per_s = 4.0;          ///< angular speed per radian of orientation error, for full-pose targets
   double k_posture_per_s = 0.5;      ///< joint speed away from the position limits, in the null space of the task
   double k_guide_per_s = 4.0;        ///< feedback gain on the deviation from a guide
-  double guide_posture_share = 0.5;  ///< largest share of the velocity limits for returning to a guide's last knot
+  double guide_posture_share = 0.5;  ///< after a guide: share of each velocity limit for the return to its last knot
   double v_max_mps = 1.0;            ///< largest tool speed toward the target, on top of the target's own velocity
   double lambda_0 = 0.05;            ///< largest damping near singular postures, paper eq (6)
   double sigma_0 = 0.05;             ///< damping begins below this singular value
@@ -42,15 +42,15 @@ struct SidestepGains {
 
 /// The shield (shield.h). Distances are from surface to surface.
 struct ShieldSettings {
-  bool enabled = true;             ///< off for experiments only
-  double hard_clearance_m = 0.02;  ///< hard tier: relaxed only where the joint limits leave no other solution
-  double hard_gain_per_s = 15.0;   ///< share of the clearance above it that may be lost per second
-  double pass_clearance_m = 0.04;  ///< pass tier: distance at the closest approach of a moving obstacle
-  double pass_gain_per_s = 6.0;
+  bool enabled = true;                ///< off for experiments only
+  double hard_clearance_m = 0.02;     ///< hard tier: relaxed only where the joint limits leave no other solution
+  double hard_gain_per_s = 15.0;      ///< approach speed per metre above hard_clearance_m
+  double pass_clearance_m = 0.04;     ///< pass tier: distance at the closest approach of a moving obstacle
+  double pass_gain_per_s = 6.0;       ///< the same above pass_clearance_m at the closest approach
   double pass_reaction_s = 0.12;      ///< time the arm needs to start an evasion
   double pass_horizon_s = 0.5;        ///< look-ahead for the closest approach
   double comfort_clearance_m = 0.16;  ///< comfort tier: preferred distance, traded against the nominal velocity
-  double comfort_gain_per_s = 4.0;
+  double comfort_gain_per_s = 4.0;    ///< the same above comfort_clearance_m
   double comfort_far_m = 0.4;    ///< comfort_weight applies at this distance of the tool from the target and beyond
   double comfort_near_m = 0.15;  ///< comfort_least_weight applies at this distance and below; linear in between
   double comfort_least_weight = 0.2;  ///< s2/m2
@@ -58,7 +58,7 @@ struct ShieldSettings {
   double tool_weight =
       60.0;  ///< w of the programme: cost of tool velocity error relative to joint velocity error, 1/m2
   double self_clearance_m = 0.02;  ///< between two links
-  double range_m = 0.4;            ///< pairs farther apart, now and within the horizon, are ignored
+  double range_m = 0.4;            ///< pairs farther apart, now and within pass_horizon_s, are ignored
 };
 
 /// Look-ahead and planning beside the cycle (foresight/).
@@ -69,17 +69,17 @@ struct ForesightSettings {
   int64_t seed = 1;           ///< of the planner's random numbers
 };
 
-/// Largest ages of the inputs by local receipt time, s, and the reaction beyond them.
+/// Largest ages of the inputs by local receipt time, the reaction beyond them, and two durations.
 struct Timeouts {
-  double target_s = 0.250;          ///< brake to hold
-  double obstacles_s = 0.100;       ///< brake
-  double arm_state_s = 0.030;       ///< brake
-  double arm_state_lost_s = 0.100;  ///< fault
+  double target_s = 0.250;          ///< then mode HOLD
+  double obstacles_s = 0.100;       ///< then mode BRAKE
+  double arm_state_s = 0.030;       ///< then mode BRAKE
+  double arm_state_lost_s = 0.100;  ///< then mode FAULT
   double consistent_s = 0.5;        ///< duration of consistent arm states that is required before the arm moves
   double coast_s = 0.3;             ///< how long a jumped or vanished obstacle is remembered (obstacle_memory.h)
 };
 
-/// Measurement errors of reported obstacles; each adds to the distance that is kept, as in ISO/TS 15066.
+/// Measurement errors of reported obstacles. Obstacles are extrapolated by the latency and grow by the other two.
 struct ObstacleTrust {
   double latency_s = 0.0;                ///< from the measurement to the receipt; obstacles are extrapolated by it
   double uncertainty_m = 0.0;            ///< of a reported position
@@ -100,7 +100,7 @@ struct Settings {
   double obstacle_speed_bound_mps =
       2.0;  ///< obstacles of a timed-out set grow by this speed x age; beyond it a position change counts as a jump
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
-  double following_error_rad = 0.5;  ///< largest distance between commanded and measured position, per joint
+  double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint (command_stream.h)
 
   double period_s() const { return 1.0 / rate_hz; }
 };

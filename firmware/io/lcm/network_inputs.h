@@ -12,7 +12,7 @@ namespace sidestep {
 
 /// The inbound side of a loop: decodes each message (message_decoder.h), merges the obstacles of several senders
 /// (obstacle_merger.h), passes the value through the input gate (input_gate.h) and counts rejected messages. For one
-/// thread. Does not throw; does not allocate after the largest message of each kind. Large: lives on the heap.
+/// thread. Does not throw; its buffers grow to the largest message of each kind seen so far. Large: lives on the heap.
 class NetworkInputs {
  public:
   NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
@@ -20,7 +20,7 @@ class NetworkInputs {
   ~NetworkInputs();
 
   /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt time;
-  /// otherwise its content is arbitrary. The count is left to the caller. now_s: local time of receipt.
+  /// otherwise its content is arbitrary. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);
   /// part 0: the own channel; part k: the k-th neighbour, from 1.

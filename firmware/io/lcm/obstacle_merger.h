@@ -28,8 +28,8 @@ class ObstacleMerger {
   bool accept(size_t part, int64_t utime, double now_s);
 
   struct Merged {
-    int64_t utime;
-    double age_s;  ///< of the oldest part
+    int64_t utime;  ///< of the merge, increasing with every merged set
+    double age_s;   ///< of the oldest part
   };
   /// Writes the merged set; nothing while a part is missing or too old, or when the set would exceed kMaxObstacles.
   /// Does not allocate.
