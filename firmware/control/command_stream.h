@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The stream of commands to the arm. It starts from the measured arm, continues from its own last command, and ends at
-/// rest or when the arm cannot be following it any more.
+/// The stream of commands to the arm. It starts from the measured arm and continues from its own last command. It ends
+/// in WAIT, in FAULT once at rest, and when the arm cannot be following it any more.
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
 /// pushed, the commanded position also moves toward the measured one. Per joint, with the error
@@ -18,9 +18,9 @@ namespace sidestep {
 ///   0               for |e| <= F/2
 ///   |e| - F/2       for F/2 < |e| <= F
 ///   |e|             for |e| > F
-/// It is closed at the speed from which the joint can still stop within that distance. The sum of velocity and
-/// correction is the rate of the commanded position; the rate keeps the joint's velocity limit, and its change per
-/// cycle the acceleration limit.
+/// It is closed at the speed from which the joint can still stop within that distance. The rate of the commanded
+/// position is the velocity plus this correction. The rate stays within the velocity limit, and its change per cycle
+/// within the acceleration limit.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
@@ -42,8 +42,9 @@ void check_continuity(const Model& model, const MonitorResult& inputs, CommandSt
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream);
 
 /// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. The
-/// following error acts as a position limit: the command stays within following_error_rad of the measured position, so
-/// that an arm that is held in place stops it. The mode matters because the stream catches up only in modes that move.
+/// following error acts as a position limit: the velocity does not move the command farther than following_error_rad
+/// away from the measured position, so that an arm that is held in place stops it. The mode matters because the stream
+/// catches up only in modes that move.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
 /// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the

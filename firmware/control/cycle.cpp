@@ -1,6 +1,7 @@
 #include "firmware/control/cycle.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "firmware/control/extrapolation.h"
 #include "firmware/control/guided_law.h"
@@ -16,7 +17,8 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
                             double now_s) {
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const Settings& settings = model.settings;
-  if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, state.planned_mps);
+  const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
+  if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
   if (guide) return guided_law(settings.sidestep, input, *guide, now_s);
   return sidestep_law(settings.sidestep, input,
                       away_from_limits(settings.sidestep, model.arm.limits, input.position_rad));
@@ -111,8 +113,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const Mode mode = next.supervision.mode;
   result.command = gate(model, mode, arm, range, safe_radps, next.stream, result.report.limiting);
   next.stream.running = stream_continues(next.stream, mode, monitored);
-  next.planned_mps.reset();
-  if (mode == Mode::kTrack) next.planned_mps = nominal.tool_velocity_mps;
+  next.planned = {mode == Mode::kTrack, nominal.tool_velocity_mps};
   probe.passed(Stage::kGate);
 
   report_nominal(nominal, safe_radps, result.report);
@@ -136,7 +137,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   if (monitored.status.arm_known) {
     if (!was_running) {
       start_stream(model, *inputs.arm.message, next.arm_monitor.rate_radps, next.stream);
-      next.planned_mps.reset();
+      next.planned.valid = false;
     }
     NoProbe none;
     move_arm(model, inputs, monitored, now_s, probe ? *probe : none, result);

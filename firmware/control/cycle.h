@@ -1,7 +1,6 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 
 #include "firmware/control/command_stream.h"
 #include "firmware/control/input_monitor.h"
@@ -12,13 +11,19 @@
 
 namespace sidestep {
 
+/// The commanded tool velocity of the last cycle; valid if that was in TRACK. Only the paper's law uses it.
+struct PlannedVelocity {
+  bool valid = false;
+  Vector3 velocity_mps = Vector3::Zero();
+};
+
 /// What one cycle hands to the next, grouped by the part of the cycle that owns it.
 struct State {
-  Supervision supervision;             ///< supervisor.h
-  ArmMonitor arm_monitor;              ///< input_monitor.h
-  CommandStream stream;                ///< command_stream.h
-  JointVector evasion_radps;           ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
-  std::optional<Vector3> planned_mps;  ///< commanded tool velocity of the last cycle; empty unless that was in TRACK
+  Supervision supervision;    ///< supervisor.h
+  ArmMonitor arm_monitor;     ///< input_monitor.h
+  CommandStream stream;       ///< command_stream.h
+  JointVector evasion_radps;  ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
+  PlannedVelocity planned;
 };
 
 /// The report of one cycle, published as controller_status_t.
@@ -42,7 +47,7 @@ struct Report {
 };
 
 struct Result {
-  bool commanding = false;  ///< the command is to be sent; false in WAIT, and in FAULT once the arm is at rest
+  bool commanding = false;  ///< the command stream runs (command_stream.h): the command is to be sent
   Command command;          ///< of size 0 before the first arm state
   Report report;
   State next;

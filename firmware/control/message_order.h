@@ -12,9 +12,11 @@ double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s,
 class MessageOrder {
  public:
   /// Accepts a newer utime. Drops a repeated one, and an older one unless its sender has restarted. A restart is
-  /// assumed when nothing was accepted for restart_s, or when the third message in a row with increasing utimes is
-  /// older than the newest by more than restart_s: a late message of a running sender is followed by newer ones. now_s:
-  /// local time of receipt. restart_s: the timeout of the channel.
+  /// assumed
+  ///   - when nothing was accepted for restart_s, or
+  ///   - after three messages in a row whose utimes increase and are all older than the newest accepted one by more
+  ///     than restart_s. (After one late message, a running sender continues with newer ones.)
+  /// now_s: local time of receipt. restart_s: the timeout of the channel.
   bool accept(int64_t utime, double now_s, double restart_s);
 
   /// For a message that was not accepted: it is older than the newest one, not a repetition of it.

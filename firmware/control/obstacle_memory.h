@@ -7,14 +7,14 @@
 
 namespace sidestep {
 
-/// Keeps obstacles whose reports are doubtful for coast_s after their last good report:
+/// An obstacle whose report is doubtful is kept for coast_s after its last good report. There are two cases:
 ///
-/// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm
-/// (measurement
-///   noise). If it is reported farther away, the report may be wrong, so a copy also stays at the last position, at
-///   rest. The newest 64 jumps are kept.
+/// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm, which
+///   covers measurement noise. If it is reported farther away, the report may be wrong. Then a copy stays at the last
+///   position, at rest, besides the reported one. The newest 64 jumps are kept.
 /// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
-///   channel alternate with their own obstacles. It moves on with its last velocity until it is reported again.
+///   channel alternate with their own obstacles. The obstacle moves on with its last velocity, until it is reported
+///   again or coast_s is over.
 ///
 /// Obstacles are matched by id; obstacles with the same id are matched in the order of the message. The paper's law
 /// runs without this memory (coast_s = 0). Large: lives on the heap, like an ObstacleSet.
@@ -27,9 +27,9 @@ class ObstacleMemory {
   /// counts them in set.remembered. elapsed_s: since the set before. Work is bounded by n log n; nothing is allocated.
   void add_remembered(ObstacleSet& set, double elapsed_s, double now_s);
 
-  /// A set with an older utime than the newest one. Its obstacles that the newest set does not hold are kept as
-  /// vanished ones: another sender, whose clock is behind, may report them. late_s: upper bound of the difference of
-  /// the clocks.
+  /// A set with an older utime than the newest one, perhaps of another sender whose clock is behind. Its obstacles that
+  /// the newest set does not hold are kept as vanished ones from now on. An obstacle that both sets hold has jumped if
+  /// it could not move from the late position to the newest one within late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.

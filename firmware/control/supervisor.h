@@ -39,11 +39,11 @@ inline bool moves(Mode mode) {
 ///
 ///   from                to     when
 ///   WAIT                HOLD   ready
-///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms or inconsistent; a command that is not finite
+///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms or inconsistent; step() also sets FAULT when a
+///                              result is not finite
 ///   FAULT               HOLD   ready
-///   FAULT               WAIT   ready but for the obstacles: no set is known yet
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
-///                              3 cycles in a row skipped
+///                              3 or more cycles skipped since the last one that ran in time
 ///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///

@@ -62,7 +62,7 @@ bool sanitize(ObstacleSet& set) {
 }
 
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& orientation, const Vector3& size_m) {
-  const Obstacle invalid = sphere_obstacle(centre, std::nan(""));
+  Obstacle invalid = sphere_obstacle(centre, std::nan(""));
   if (!size_m.allFinite()) return invalid;
   if (shape == Shape::kSphere) return sphere_obstacle(centre, size_m[0]);
   if (size_m.minCoeff() < 0.0 || !is_unit(orientation)) return invalid;

@@ -11,8 +11,8 @@ bool plausible(const ArmState& state, int joints);
 bool plausible(const Target& target);
 bool plausible(const Obstacle& obstacle);
 
-/// Each returns false for an implausible value; else resets the fields that do not apply to neutral values: the
-/// orientation of a position target, the angular velocity of a sphere.
+/// Each returns false for an implausible value. Otherwise fields without meaning get neutral values: the orientation of
+/// a target that tracks none, the angular velocity of a sphere.
 bool sanitize(Target& target);
 bool sanitize(ObstacleSet& set);
 

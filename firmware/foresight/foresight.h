@@ -13,13 +13,19 @@ class Foresight {
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
   /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
-  ///   - Every fifth call assesses: a rollout with the present guide, and one without. Without a guide at least 0.5 s
-  ///     cheaper, or not worse where the guide does not arrive either: the guide is dropped.
-  ///   - While the last forecast is not good, each other call either plans a candidate (plan_to_target(); if that fails
-  ///     and a collision is predicted, plan_retreat()), or, with a candidate from the call before, compares its rollout
-  ///     with the present guide's. A candidate that costs at least 0.5 s less becomes the guide.
-  ///   - After more than 50 plans without a guide to the target, with no guide and no arrival expected, the status is
-  ///     kWaiting, without knots.
+  ///
+  /// Every fifth call is an assessment. It runs a rollout with the present guide and one without a guide. The guide is
+  /// dropped if the rollout without it costs at least 0.5 s less, or if the arm does not arrive with it and the rollout
+  /// without it costs no more.
+  ///
+  /// The four calls between two assessments do nothing while the last forecast is good. Otherwise they search in turns:
+  /// one call plans a candidate with plan_to_target(), or, if that fails and a collision is predicted, with
+  /// plan_retreat(). The next call compares the candidate's rollout with the present guide's. A candidate that costs at
+  /// least 0.5 s less becomes the guide.
+  ///
+  /// When more than 50 planning calls in a row found no guide to the target, the arm has no guide and no arrival is
+  /// expected, the status becomes kWaiting, without knots: the law alone continues.
+  ///
   /// A snapshot that is not tracking resets everything. The same sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
 

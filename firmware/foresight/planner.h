@@ -8,11 +8,12 @@ namespace sidestep {
 /// Searches for guides by random sampling: joint paths in time that keep clear of the obstacles at their present
 /// velocities.
 ///
-/// A guide starts at the present configuration with zero velocity, although the arm may be moving, possibly after a
-/// pause and through one intermediate configuration, to a goal configuration. Between two knots every joint moves with
-/// the profile 3u^2 - 2u^3 (types/guide.h), as fast as 90 % of the velocity and acceleration limits allow. A guide is
-/// clear if the clearance of its configurations, sampled every 60 ms up to foresight.horizon_s, is at least
-/// foresight.clearance_m. In the first 0.5 s the limit is min(foresight.clearance_m, clearance at the start - 5 mm).
+/// A guide leads from the present configuration to a goal configuration, possibly after a pause, and possibly through
+/// one intermediate configuration. It starts with zero velocity, although the arm may be moving. Between two knots
+/// every joint moves with the profile 3u^2 - 2u^3 (types/guide.h), as fast as 90 % of the velocity and acceleration
+/// limits allow. A guide is clear if the clearance of its configurations, sampled every 60 ms up to
+/// foresight.horizon_s, is at least foresight.clearance_m. In the first 0.5 s the limit is min(foresight.clearance_m,
+/// clearance at the start - 5 mm).
 class Planner {
  public:
   explicit Planner(const Model& model) : model_(model), random_(model.settings.foresight.seed) {}
@@ -20,9 +21,9 @@ class Planner {
   /// Restarts the random sequence from foresight.seed.
   void reset() { random_ = SplitMix64(model_.settings.foresight.seed); }
 
-  /// Six tries for a guide to a configuration with the tool at the target as predicted for kTargetCoast_s from now,
-  /// reached at least 1 s before the horizon. Returns the clear one that arrives soonest, ForesightStatus::kGuided;
-  /// without knots if no try succeeds.
+  /// Six tries. The goal configuration has the tool where the target is predicted to be kTargetCoast_s from now. The
+  /// guide reaches it at least 1 s before the horizon. Returns the clear guide that arrives soonest, with
+  /// ForesightStatus::kGuided; without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
 
   /// Six tries for a guide to a configuration within 1 rad per joint where the arm stays clear up to the horizon.

@@ -35,7 +35,7 @@ struct Clearance {
 /// >= reported() are the surroundings of the configuration, which neither move nor grow.
 struct ObstacleView {
   const ObstacleSet* set = nullptr;                     ///< null: no set was received
-  double age_s = 0.0;                                   ///< of the set
+  double age_s = 0.0;                                   ///< of the set at the time of the cycle, since its measurement
   double growth_m = 0.0;                                ///< added to the radius of each obstacle of the set
   const std::vector<Obstacle>* surroundings = nullptr;  ///< the static obstacles; null: none
 

@@ -22,9 +22,9 @@ VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowes
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 
-/// The largest velocity v toward a position limit gap_rad away with v T + v^2 / (2 a) <= |gap|: after one more period
-/// at v, braking at a stops the joint at the limit. Has the sign of the gap: negative for a joint past its limit, which
-/// has to return. Infinite for an infinite gap.
+/// The velocity v toward a position limit with |v| T + v^2 / (2 a) = |gap|: after one more period at v, braking at a
+/// stops the joint at the limit. gap_rad is the distance left to the limit, lower or upper; negative for a joint past
+/// it. v has the sign of the gap: positive toward the limit, negative back to it. Infinite for an infinite gap.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);
 
 }  // namespace sidestep

@@ -132,7 +132,8 @@ int run(const Arguments& arguments) {
 }  // namespace sidestep
 
 int main(int argc, char** argv) {
-  sidestep::CommandLine app{"Shows how the controller reads a URDF: joints, limits, the capsules around the links, and oddities."};
+  sidestep::CommandLine app{
+      "Shows how the controller reads a URDF: joints, limits, the capsules around the links, and oddities."};
   sidestep::Arguments arguments;
   sidestep::describe(app, arguments);
   try {

@@ -155,7 +155,8 @@ int act(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app("Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable.");
+  CommandLine app(
+      "Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable.");
   Options options;
   declare(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;

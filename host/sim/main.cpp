@@ -27,10 +27,8 @@ void declare(sidestep::CommandLine& app, Options& options) {
   app.add_option("--scenario", options.scenario, "scenario file, such as paper-c.yaml").required().type_name("FILE");
   app.add_flag("--lockstep", options.lockstep,
                "run on the arm's clock: deterministic, as fast as possible (the controller also needs --lockstep)");
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)")
-      .type_name("URL");
-  app.add_option("--log", options.log_file, "write all messages to this log, in lcm-logger's format")
-      .type_name("FILE");
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)").type_name("URL");
+  app.add_option("--log", options.log_file, "write all messages to this log, in lcm-logger's format").type_name("FILE");
   app.add_option("--csv", options.csv_file,
                  "write one row per control period to this file; with several arms one file each, with the arm's name "
                  "before the suffix")
@@ -103,7 +101,8 @@ int simulate(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  sidestep::CommandLine app("Sidestep's simulator: plant, world and independent measurement for a controller connected by LCM.");
+  sidestep::CommandLine app(
+      "Sidestep's simulator: plant, world and independent measurement for a controller connected by LCM.");
   Options options;
   declare(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;

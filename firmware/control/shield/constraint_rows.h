@@ -4,28 +4,34 @@
 
 namespace sidestep {
 
-/// Tiers of constraint rows. Notation: d surface distance of a pair, n unit normal from the obstacle to the link, a =
-/// n^T J_p the row with J_p the Jacobian of the link's nearest point, v = n^T (velocity of the obstacle's nearest
-/// point) its approach speed. So d' = a q' - v. Gains and clearances are those of ShieldSettings. All b are capped at 3
-/// m/s, since penetration or a short time would demand more than any arm can do.
+/// Tiers of constraint rows.
 ///
-///   hard     b = max(k v - hard_gain r, min(k v, 0) - v_stop(r)) with r = d - hard_clearance; for r <= 0 only the
-///   first.
-///            k is 1 for a receding obstacle; for an approaching one it falls linearly from 1 to 0 as its predicted
-///            least distance m rises from hard_clearance to pass_clearance. v_stop(r): the largest speed that can be
-///            braked within r, one period of travel included, with the deceleration 1/2 sum |a_j| acceleration_limit_j
-///            (the other half is left for other rows). Self pairs: r = d - self_clearance, v = 0.
-///   pass     for a moving obstacle whose closest approach within pass_horizon is at time t with distance m, and a
-///   taken
-///            there: m < pass_clearance: b = (pass_clearance - m) / max(t - pass_reaction, 0.05 s);
-///            else b = -pass_gain (m - pass_clearance).
-///   comfort  b = v - comfort_gain (d - comfort_clearance)
+/// Notation, for a link and an obstacle: d is their surface distance, n the unit normal from the obstacle to the link,
+/// a = n^T J_p with the Jacobian J_p of the link's nearest point, v = n^T (velocity of the obstacle's nearest point)
+/// the speed at which the obstacle approaches. Then d' = a q' - v. m is the least distance predicted for the next
+/// pass_horizon at constant velocity, t its time. Gains and clearances are those of ShieldSettings.
+///
+/// hard: with r = d - hard_clearance, b is the larger of b1 and b2:
+///     b1 = k v - hard_gain r            the clearance decays at most exponentially
+///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0
+///   k is the counted share of the obstacle's speed. For a receding obstacle k = 1. For an approaching one k falls
+///   linearly from 1 to 0 while m rises from hard_clearance to pass_clearance: an obstacle that will pass is no threat.
+///   v_stop(r) is the largest speed that can be braked within r, one period of travel included, at the deceleration
+///   1/2 sum over joints j of |a_j| * acceleration limit_j. The other half is left for other rows.
+///   For a pair of links r = d - self_clearance and v = 0.
+/// pass: for an approaching obstacle; n, J_p and a are those at the time t.
+///     b = (pass_clearance - m) / max(t - pass_reaction, 0.05 s)    if m < pass_clearance
+///     b = -pass_gain (m - pass_clearance)                          otherwise
+/// comfort:
+///     b = v - comfort_gain (d - comfort_clearance)
+///
+/// Every b is capped at 3 m/s: penetration or a short time would demand more than any arm can do.
 enum class Tier { kHard, kPass, kComfort };
 constexpr int kTiers = 3;
 
 /// One row of the programme: row . q' >= bound.
 struct ConstraintRow {
-  JointVector row;  ///< a_i, n x 1, m: rate of the distance over the joint velocities
+  JointVector row;  ///< a_i as a column, n x 1, m
   double bound;     ///< b_i, m/s
   Tier tier;
   double other_bound = 0.0;  ///< pass: b for -row, which passes the obstacle on its other side, m/s; 0: none

@@ -7,7 +7,8 @@ namespace sidestep {
 /// Improves the plan of the shield where it fails to evade. The rows are linear and fix the side on which each obstacle
 /// is passed. Evasion simulates the arm's motion with the plan and with other candidates.
 ///
-/// Rollout: the arm accelerates to a constant joint velocity at its limits, in steps of 70 ms. The obstacles of the
+/// Rollout: the arm changes from the last commanded velocity to that of the candidate at its acceleration limits and
+/// keeps it, in steps of 70 ms. The obstacles of the
 /// near pairs (the first 16) move at constant velocity. It ends 0.2 s after the last closest approach below
 /// pass_clearance. Trigger: a pass row has b > 0, and the plan's rollout falls below hard_clearance. Candidates: the
 /// evasion of the previous cycle; the plan; the solutions of the programme with other passing sides of the two-sided

@@ -32,7 +32,7 @@ struct Plan {
 
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
-  double hard_slack_mps = 0.0;  ///< s_hard: by how much the worst hard row is violated; 0: all are met
+  double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; all hard rows are met up to 1e-4
   Plan plan;
 };
 
@@ -55,9 +55,9 @@ struct ShieldResult {
 /// solution. The second gives the velocity of the coming period: u is the plan, w = 0, only the hard tier, within
 /// `range`, which includes the acceleration limits.
 ///
-/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows: then
-/// each hard row that is active at the slack is replaced by a q' >= b - s_hard, without slack, and the programme is
-/// solved again for the other hard rows. A programme takes at most 3 such rounds.
+/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows. Then
+/// each hard row with a q' + s_hard = b is fixed as a q' >= b - s_hard, without slack, and the programme is solved
+/// again, so that the other hard rows do not profit from this slack. A programme is solved at most 3 times in all.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps);
 

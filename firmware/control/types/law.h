@@ -23,7 +23,7 @@ struct NominalCommand {
   Vector3 tool_velocity_mps = Vector3::Zero();  ///< commanded tool velocity X (docs/paper.md, item 4), linear part
   double beta = 0.0;                            ///< task priority, paper eq (19); 0 in our own law
   double damping = 0.0;                         ///< lambda, paper eq (6)
-  bool task_speed_limited = false;              ///< the tool velocity was clipped to v_max
+  bool task_speed_limited = false;  ///< v_max clipped the tool velocity (in our own law: its part toward the target)
 };
 
 }  // namespace sidestep

@@ -43,14 +43,14 @@ struct SidestepGains {
 /// The shield (shield.h). Distances are from surface to surface.
 struct ShieldSettings {
   bool enabled = true;                ///< off for experiments only
-  double hard_clearance_m = 0.02;     ///< hard tier: relaxed only where the joint limits leave no other solution
+  double hard_clearance_m = 0.02;     ///< hard tier: violated only where not all hard rows can be met
   double hard_gain_per_s = 15.0;      ///< approach speed per metre above hard_clearance_m
   double pass_clearance_m = 0.04;     ///< pass tier: distance at the closest approach of a moving obstacle
-  double pass_gain_per_s = 6.0;       ///< the same above pass_clearance_m at the closest approach
+  double pass_gain_per_s = 6.0;       ///< approach speed per metre above pass_clearance_m, at the closest approach
   double pass_reaction_s = 0.12;      ///< time the arm needs to start an evasion
   double pass_horizon_s = 0.5;        ///< look-ahead for the closest approach
   double comfort_clearance_m = 0.16;  ///< comfort tier: preferred distance, traded against the nominal velocity
-  double comfort_gain_per_s = 4.0;    ///< the same above comfort_clearance_m
+  double comfort_gain_per_s = 4.0;    ///< approach speed per metre above comfort_clearance_m
   double comfort_far_m = 0.4;    ///< comfort_weight applies at this distance of the tool from the target and beyond
   double comfort_near_m = 0.15;  ///< comfort_least_weight applies at this distance and below; linear in between
   double comfort_least_weight = 0.2;  ///< s2/m2

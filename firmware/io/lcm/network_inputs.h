@@ -11,15 +11,17 @@
 namespace sidestep {
 
 /// The inbound side of a loop: decodes each message (message_decoder.h), merges the obstacles of several senders
-/// (obstacle_merger.h), passes the value through the input gate (input_gate.h) and counts rejected messages. For one
-/// thread. Does not throw; its buffers grow to the largest message of each kind seen so far. Large: lives on the heap.
+/// (obstacle_merger.h; without neighbours the set goes on unchanged), passes the value through the input gate
+/// (input_gate.h) and counts rejected messages. For one thread. Does not throw; its buffers grow to the largest message
+/// of each kind seen so far. Large: lives on the heap.
 class NetworkInputs {
  public:
   NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
                 bool lockstep);
   ~NetworkInputs();
 
-  /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt time;
+  /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt
+  /// time, which is that of the oldest part for a merged set;
   /// otherwise its content is arbitrary. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);

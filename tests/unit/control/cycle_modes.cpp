@@ -137,17 +137,17 @@ void planned_velocity_is_discarded_while_holding(void**) {
   ClosedLoop loop = tracking("paper");
   loop.model.settings.paper.tool_velocity = ToolVelocity::kPlanned;
   loop.run(0.3);
-  assert_true(loop.state.planned_mps && loop.state.planned_mps->norm() > 0.02);
+  assert_true(loop.state.planned.valid && loop.state.planned.velocity_mps.norm() > 0.02);
   loop.sends_target = false;
   loop.run(0.6);
-  assert_false(loop.state.planned_mps.has_value());
+  assert_false(loop.state.planned.valid);
   check_near(loop.speed_radps(), 0.0, 0);
   loop.sends_target = true;
   loop.cycle();
-  assert_true(loop.mode() == Mode::kTrack && loop.state.planned_mps);
+  assert_true(loop.mode() == Mode::kTrack && loop.state.planned.valid);
   const Vector3 force =
       attraction(loop.model.settings.paper, loop.target, loop.last.report.tool_position_m, Vector3(0, 0, 0));
-  check_near(*loop.state.planned_mps, Vector3(force * loop.model.settings.period_s()), 1e-12);
+  check_near(loop.state.planned.velocity_mps, Vector3(force * loop.model.settings.period_s()), 1e-12);
 }
 
 }  // namespace

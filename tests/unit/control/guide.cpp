@@ -56,7 +56,10 @@ void after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there(void**) {
   const JointVector q_rad = test::home_rad(), at_rest = JointVector::Zero(7);
   Target target;
   target.position_m = poses.tool_position;
-  const LawInput now{lwa3(), poses, tool_jacobian(poses, 3), q_rad, at_rest, target, ObstacleView{}, Clearance{}};
+  const TaskJacobian jacobian = tool_jacobian(poses, 3);
+  const ObstacleView no_obstacles;
+  const Clearance clearance{};
+  const LawInput now{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance};
   Guide guide = random_guide(random, 2);
   const double after_s = guide.end_s() + 1.0;
   const NominalCommand holding = guided_law(gains, now, guide, after_s);
