@@ -57,7 +57,7 @@ void check_continuity(const Model& model, const MonitorResult& inputs, CommandSt
   if (continuity.clock_went_back) stream.stopped_s = -HUGE_VAL;
   if (stream.running && continuity.cycles_paused) {
     stream.running = false;
-    stream.stopped_s = continuity.arm_waits_until_s + model.settings.period_s();  // resolution of the arm states
+    stream.stopped_s = continuity.arm_waited_until_s + model.settings.period_s();  // resolution of the arm states
   }
   stream.running = stream.running && continuity.arm_follows && !inputs.status.arm_starting;
 }

@@ -18,9 +18,10 @@ namespace sidestep {
 ///   0               for |e| <= F/2
 ///   |e| - F/2       for F/2 < |e| <= F
 ///   |e|             for |e| > F
-/// It is closed at the speed from which the joint can still stop within that distance. The rate of the commanded
-/// position is the velocity plus this correction. The rate stays within the velocity limit, and its change per cycle
-/// within the acceleration limit.
+/// An arm that merely lags keeps up to F/2, so that its command is not held back; an arm beyond F has been moved, and
+/// the stream goes to it. It is closed at the speed from which the joint can still stop within that distance. The rate
+/// of the commanded position is the velocity plus this correction. The rate stays within the velocity limit, and its
+/// change per cycle within the acceleration limit.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded

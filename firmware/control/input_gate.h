@@ -25,7 +25,7 @@ struct Verdict {
 
 /// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
 /// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). Obstacles of a late
-/// set that reaches the gate enter the memory. Does not throw and
+/// set enter the memory; with neighbours the merger drops late sets before. Does not throw and
 /// does not allocate. Large: lives on the heap.
 class InputGate {
  public:

@@ -86,7 +86,7 @@ MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double no
   ArmContinuity& continuity = result.continuity;
   const double waits_s = longest_gap_s(model, kArmWaits_s);
   continuity.cycles_paused = now_s - monitor.cycle_s > waits_s + kRounding_s;
-  continuity.arm_waits_until_s = monitor.cycle_s + waits_s;
+  continuity.arm_waited_until_s = monitor.cycle_s + waits_s;
   continuity.clock_went_back = now_s < monitor.cycle_s;
   status.arm_known = inputs.arm.message != nullptr;
   if (status.arm_known) monitor_arm(model, inputs.arm, now_s, monitor, result);

@@ -21,11 +21,11 @@ struct ArmMonitor {
 
 /// Whether the arm can still be executing the command stream; the input of the command stream (command_stream.h).
 struct ArmContinuity {
-  bool arm_follows = true;         ///< the measured step is possible within the elapsed time
-  bool cycles_paused = false;      ///< no cycle for max(50 ms, 1.5 periods): the arm has begun to stop on its own
-  double arm_waits_until_s = 0.0;  ///< when the arm began to stop; valid with cycles_paused
-  bool clock_went_back = false;    ///< this cycle is earlier than the previous one
-  double arm_received_s = 0.0;     ///< receipt of the newest arm state
+  bool arm_follows = true;          ///< the measured step is possible within the elapsed time
+  bool cycles_paused = false;       ///< no cycle for max(50 ms, 1.5 periods): the arm has begun to stop on its own
+  double arm_waited_until_s = 0.0;  ///< end of the arm's wait for a command, when it began to stop
+  bool clock_went_back = false;     ///< this cycle is earlier than the previous one
+  double arm_received_s = 0.0;      ///< receipt of the newest arm state
 };
 
 struct MonitorResult {

@@ -29,7 +29,7 @@ class ObstacleMemory {
 
   /// A set with an older utime than the newest one, perhaps of another sender whose clock is behind. Its obstacles that
   /// the newest set does not hold are kept as vanished ones from now on. An obstacle that both sets hold has jumped if
-  /// it could not move from the late position to the newest one within late_s.
+  /// it could not move from the late position to the newest one within late_s, the largest delay of such a set.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.

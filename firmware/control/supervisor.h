@@ -13,7 +13,7 @@ struct InputStatus {
   bool arm_starting = false;    ///< its driver started less than Settings::start_guard_s ago: must not receive commands
   bool arm_inconsistent = false;  ///< this cycle's arm state cannot follow the one before
   bool obstacles_known = false;   ///< a set was accepted, or none is required
-  bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s
+  bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
   bool target_fresh = false;     ///< not older than timeouts.target_s
   bool late = false;             ///< 3 or more cycles were skipped since the last one that ran in time

@@ -20,11 +20,13 @@ class Foresight {
   ///
   /// The four calls between two assessments do nothing while the last forecast is good. Otherwise they search in turns:
   /// one call plans a candidate with plan_to_target(), or, if that fails and a collision is predicted, with
-  /// plan_retreat(). The next call compares the candidate's rollout with the present guide's. A candidate that costs at
+  /// plan_retreat(). The next call runs a rollout with
+  /// the candidate and one with the present guide (or the law alone). A candidate that costs at
   /// least 0.5 s less becomes the guide.
   ///
-  /// When more than 50 planning calls in a row found no guide to the target, the arm has no guide and no arrival is
-  /// expected, the status becomes kWaiting, without knots: the law alone continues.
+  /// The status becomes kWaiting, without knots, when three conditions hold: more than 50 planning calls in a row found
+  /// no guide to the target; there is no present guide; the last forecast does not arrive. The law alone then
+  /// continues.
   ///
   /// A snapshot that is not tracking resets everything. The same sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);

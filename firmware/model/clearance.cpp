@@ -186,8 +186,8 @@ Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const Obstac
   Clearance clearance;
   for (const LinkShape& shape : arm.shapes) clearance.links.add(transformed(poses, shape));
   Gatherer gatherer(arm, view, reach, clearance);
-  for (int o = 0; o < view.reported(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
-  for (int o = view.reported(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
+  for (int o = 0; o < view.in_set(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
+  for (int o = view.in_set(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;
 }
 

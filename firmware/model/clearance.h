@@ -25,28 +25,28 @@ struct Clearance {
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
   Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 
-  /// Pairs of moving shapes within the Reach, unordered. The distance of a pair is the lesser of its surface distances
-  /// now and at the closest approach. Of more than kMaxNear pairs those with the least distance are kept: a further
-  /// pair replaces the pair with the greatest distance.
+  /// Pairs of a movable link shape and an obstacle within the Reach, unordered. The distance of a pair is the lesser of
+  /// its surface distances now and at the closest approach. Of more than kMaxNear pairs those with the least distance
+  /// are kept: a further pair replaces the pair with the greatest distance.
   BoundedList<NearPair, kMaxNear> near;
 };
 
 /// The obstacles as they are known now: the newest set, its age, and the growth that covers what is uncertain. Indices
-/// >= reported() are the surroundings of the configuration, which neither move nor grow.
+/// >= in_set() are the surroundings of the configuration, which neither move nor grow.
 struct ObstacleView {
   const ObstacleSet* set = nullptr;                     ///< null: no set was received
   double age_s = 0.0;                                   ///< of the set at the time of the cycle, since its measurement
   double growth_m = 0.0;                                ///< added to the radius of each obstacle of the set
   const std::vector<Obstacle>* surroundings = nullptr;  ///< the static obstacles; null: none
 
-  int reported() const { return set ? set->count : 0; }
-  int count() const { return reported() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }
+  int in_set() const { return set ? set->count : 0; }
+  int count() const { return in_set() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }
   /// As reported: neither extrapolated nor grown.
   const Obstacle& at(int index) const {
-    if (index < reported()) return set->obstacles[index];
-    return (*surroundings)[index - reported()];
+    if (index < in_set()) return set->obstacles[index];
+    return (*surroundings)[index - in_set()];
   }
-  double growth_of(int index) const { return index < reported() ? growth_m : 0.0; }
+  double growth_of(int index) const { return index < in_set() ? growth_m : 0.0; }
   /// The obstacle later_s from now: extrapolated by age_s + later_s, and grown.
   Obstacle extrapolated(int index, double later_s = 0.0) const;
 };

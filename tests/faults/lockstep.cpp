@@ -29,10 +29,10 @@ Process start_controller(const std::string& law) {
 /// An ideal arm and a small world, in lockstep with a controller in another process.
 class Play {
  public:
-  explicit Play(const std::string& law) : controller_(start_controller(law)), q_rad_(JointVector::Zero(7)) {
+  explicit Play(const std::string& law)
+      : controller_(start_controller(law)), q_rad_(JointVector::Zero(7)), qd_radps_(JointVector::Zero(7)) {
     q_rad_[1] = M_PI / 2;
     q_rad_[3] = -M_PI / 2;
-    qd_radps_ = JointVector::Zero(7);
     // Messages are lost until the controller subscribes; its first answer shows that it has.
     for (int i = 0; i < 200 && peer.commands.empty(); ++i) {
       send_arm();

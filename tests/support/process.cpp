@@ -25,8 +25,8 @@ int started = 0;
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments) {
-  log_file_ = scratch_file("process-" + std::to_string(++started) + ".log", "");
+Process::Process(const std::vector<std::string>& arguments)
+    : log_file_(scratch_file("process-" + std::to_string(++started) + ".log", "")) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

@@ -18,7 +18,8 @@ namespace sidestep {
 /// 0.8, so that the arm does not alternate between two candidates.
 ///
 /// `planned_radps` is the plan, n x 1; `rows` and `range` are those of its programme. Bounded: at most 15 programmes
-/// and 18 + 2 n rollouts for n joints (two of the plan, one of the previous evasion); none without the trigger.
+/// and 18 + 2 n rollouts for n joints (two of the plan, one of the previous evasion); without the trigger one rollout,
+/// without a pass row with b > 0 none.
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps);
 

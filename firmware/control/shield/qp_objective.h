@@ -17,12 +17,12 @@ struct QpObjective {
 struct QpSolution {
   JointVector velocity_radps;   ///< q', n x 1
   double cost = 0.0;            ///< value of the objective
-  double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the hard rows were solved in rounds
+  double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the programme was solved repeatedly
 };
 
 /// Slack scales sigma_t of the hard and the pass tier, m/s. A row of tier t that is active with multiplier lambda is
-/// violated by sigma_t^2 lambda. The hard scale is so small that a hard row that can be met is violated by less than
-/// kNegligibleSlack_mps.
+/// violated by sigma_t^2 lambda, so a hard row that competes with rows of other tiers yields a thousandth of what a
+/// pass row yields.
 constexpr double kHardSlackScale_mps = 1e-3;
 constexpr double kPassSlackScale_mps = 3e-2;
 
@@ -33,7 +33,7 @@ inline double slack_scale_mps(const QpObjective& objective, Tier tier) {
   return 1.0 / std::sqrt(objective.comfort_weight);
 }
 
-/// A hard slack up to this counts as zero: the hard rows are met, and no further round is solved.
+/// A hard slack up to this counts as zero: the hard rows are met, and the programme is not solved again.
 constexpr double kNegligibleSlack_mps = 1e-4;
 
 }  // namespace sidestep

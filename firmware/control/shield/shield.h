@@ -32,7 +32,7 @@ struct Plan {
 
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
-  double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; all hard rows are met up to 1e-4
+  double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; up to 1e-4 all hard rows count as met
   Plan plan;
 };
 

@@ -128,7 +128,7 @@ void a_pause_of_the_cycles_longer_than_50_ms_is_reported_with_its_end(void**) {
   assert_false(m.cycle(0.049).continuity.cycles_paused);
   const MonitorResult result = m.cycle(0.051);
   assert_true(result.continuity.cycles_paused);
-  check_near(result.continuity.arm_waits_until_s, last_s + 0.049 + 0.05, 1e-9);
+  check_near(result.continuity.arm_waited_until_s, last_s + 0.049 + 0.05, 1e-9);
 }
 
 void a_clock_that_goes_back_is_reported(void**) {

@@ -22,8 +22,7 @@ struct Programme {
   ConstraintRows rows;
   double tool_weight, comfort_weight;
 
-  Programme(int joints, Random& random) {
-    tool_jacobian = TaskJacobian(random.chance(0.5) ? 3 : 6, joints);
+  Programme(int joints, Random& random) : tool_jacobian(random.chance(0.5) ? 3 : 6, joints) {
     for (Eigen::Index i = 0; i < tool_jacobian.size(); ++i) tool_jacobian.data()[i] = random.uniform(-0.4, 0.4);
     tool_weight = random.chance(0.3) ? 0.0 : random.uniform(1, 60);
     comfort_weight = random.chance(0.5) ? random.uniform(0.2, 1) : random.uniform(1, 1000);
