@@ -19,7 +19,7 @@ double monotonic_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// MessageOrder of the queue: the earliest delivery is at the top.
+/// Order of the queue: the earliest delivery is at the top.
 struct DueLater {
   bool operator()(const Delivery& a, const Delivery& b) const { return a.due_s > b.due_s; }
 };
@@ -97,6 +97,7 @@ int main(int argc, char** argv) {
   try {
     if (from == to) throw std::runtime_error("--from and --to must be different networks");
     std::vector<Rule> parsed;
+    parsed.reserve(rules.size());
     for (const std::string& rule : rules) parsed.push_back(parse_rule(rule));
     const Counts counts = Relay(from, to, Impairment(parsed, seed)).run();
     fmt::print("relay: {} messages, {} dropped, {} corrupted, {} duplicated, {} reordered\n", counts.received,
