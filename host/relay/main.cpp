@@ -1,23 +1,20 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <lcm/lcm-cpp.hpp>
 #include <queue>
 
 #include "firmware/base/command_line.h"
+#include "firmware/base/realtime.h"
 #include "host/relay/impairment.h"
 
 namespace {
 
 using namespace sidestep::relay;
+using sidestep::monotonic_s;
 
 std::atomic<bool> stop{false};
-
-double monotonic_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Order of the queue: the earliest delivery is at the top.
 struct DueLater {

@@ -85,12 +85,13 @@ class Log {
  private:
   /// Of a set that was merged from several senders there is no message: it is encoded for the readers of the log.
   void write_obstacles(const Latest<ObstacleSet>& latest, const Messages& messages) {
+    if (!take_new(latest, RecordKind::kObstacles)) return;
+    const Record& message = messages[static_cast<size_t>(RecordKind::kObstacles)];
     const Record& values = messages[static_cast<size_t>(RecordKind::kObstacleValues)];
-    const bool merged = messages[static_cast<size_t>(RecordKind::kObstacles)].size == 0;
-    if (merged && latest.count != written_[static_cast<size_t>(RecordKind::kObstacles)])
-      write(channels_.obstacles, latest.received_s, encode_values(values, latest.received_s));
-    if (write_new(merged ? "" : channels_.obstacles, latest, messages, RecordKind::kObstacles) && values.size > 0)
-      write(kObstacleValuesChannel, latest.received_s, Packet{values.bytes, values.size});
+    const bool merged = message.size == 0;
+    write(channels_.obstacles, latest.received_s,
+          merged ? encode_values(values, latest.received_s) : Packet{message.bytes, message.size});
+    if (values.size > 0) write(kObstacleValuesChannel, latest.received_s, Packet{values.bytes, values.size});
   }
 
   Packet encode_values(const Record& values, double received_s) {
@@ -103,15 +104,21 @@ class Log {
     return obstacle_encoder_.finish();
   }
 
-  /// A message in use for long stands in the ring repeatedly, in the log once. Returns whether it is new. An empty
-  /// channel: it is only marked as written.
+  /// Whether the message has not been written yet; a message in use for long stands in the ring repeatedly, in the log
+  /// once. It then counts as written.
   template <typename Message>
-  bool write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, RecordKind kind) {
-    const auto k = static_cast<size_t>(kind);
-    if (latest.count == written_[k]) return false;
-    written_[k] = latest.count;
-    if (!channel.empty()) write(channel, latest.received_s, Packet{messages[k].bytes, messages[k].size});
+  bool take_new(const Latest<Message>& latest, RecordKind kind) {
+    int64_t& written = written_[static_cast<size_t>(kind)];
+    if (latest.count == written) return false;
+    written = latest.count;
     return true;
+  }
+
+  template <typename Message>
+  void write_new(const std::string& channel, const Latest<Message>& latest, const Messages& messages, RecordKind kind) {
+    if (!take_new(latest, kind)) return;
+    const Record& message = messages[static_cast<size_t>(kind)];
+    write(channel, latest.received_s, Packet{message.bytes, message.size});
   }
 
   [[noreturn]] void fail() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }

@@ -1,19 +1,16 @@
 #include "firmware/control/command_stream.h"
 #include "tests/support/check.h"
+#include "tests/support/limits.h"
 #include "tests/support/random.h"
 
 using namespace sidestep;
+using test::limits_of;
 using test::Random;
 
 namespace {
 
 constexpr double kPeriod_s = 0.01;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-JointLimits limits_of(double lower, double upper, double velocity, double acceleration, int joints = 7) {
-  return {JointVector::Constant(joints, lower), JointVector::Constant(joints, upper),
-          JointVector::Constant(joints, velocity), JointVector::Constant(joints, acceleration)};
-}
 
 /// Limits that differ widely from joint to joint.
 JointLimits random_limits(Random& random, int joints) {

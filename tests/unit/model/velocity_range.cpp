@@ -1,20 +1,17 @@
 #include "firmware/model/velocity_range.h"
 
 #include "tests/support/check.h"
+#include "tests/support/limits.h"
 #include "tests/support/random.h"
 
 using namespace sidestep;
+using test::limits_of;
 using test::Random;
 
 namespace {
 
 constexpr double kPeriod_s = 0.01;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-JointLimits limits_of(double lower, double upper, double velocity, double acceleration, int joints = 7) {
-  return {JointVector::Constant(joints, lower), JointVector::Constant(joints, upper),
-          JointVector::Constant(joints, velocity), JointVector::Constant(joints, acceleration)};
-}
 
 /// Limits that differ widely from joint to joint.
 /// Nominal velocities that no sane law computes: far too fast, reversing at once, resting for a while.
