@@ -18,10 +18,10 @@ SETUP    ?= yes
 
 # The caller may set CXX, CPPFLAGS, CXXFLAGS, LDFLAGS and LDLIBS. CXXFLAGS come last, so that another -O counts.
 # The same objects go into the programs and into the library, which exports only what its header declares.
-FLAGS     = -std=c++17 -O2 -g1 -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow $(GCC_FLAGS)
+FLAGS     = -std=c++17 -O2 -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow $(GCC_FLAGS)
 # make sanitize: which sanitizers to build with. LCM's C++ binding casts its typed subscriptions in a form that vptr and
 # null report.
-FLAGS    += $(SANITIZE:%=-fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
+FLAGS    += $(SANITIZE:%=-g1 -fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
 # Eigen at -O2 makes gcc report uninitialised values where there are none. The parameters let gcc's memory grow to
 # 500 MB before it looks for garbage, which takes a tenth of its time.
 GCC_FLAGS = $(if $(findstring clang,$(CXX)),,-Wno-maybe-uninitialized \

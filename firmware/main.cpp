@@ -1,10 +1,10 @@
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <csignal>
 #include <iostream>
 
 #include "firmware/base/command_line.h"
+#include "firmware/base/log.h"
 #include "firmware/io/config/config.h"
 #include "firmware/io/loop/cycle_clock.h"
 #include "firmware/io/loop/loop.h"
@@ -61,19 +61,17 @@ int run(const Arguments& arguments) {
     return 2;
   }
   const Settings& settings = config.model.settings;
-  spdlog::info("{} joints, {} link shapes, {:g} Hz{}, law {}", config.model.arm.joints, config.model.arm.shapes.size(),
-               settings.rate_hz, arguments.lockstep ? " in lockstep" : "",
-               settings.law == Law::kPaper ? "paper" : "sidestep");
+  log_info(fmt::format("{} joints, {} link shapes, {:g} Hz{}, law {}", config.model.arm.joints,
+                       config.model.arm.shapes.size(), settings.rate_hz, arguments.lockstep ? " in lockstep" : "",
+                       settings.law == Law::kPaper ? "paper" : "sidestep"));
   const auto loop = arguments.lockstep ? run_lockstep : run_realtime;
   const LoopSummary summary = loop(config, arguments.lcm_url, requests);
-  spdlog::info("{} cycles, {} skipped, {} messages rejected; times in\n{}", summary.timing.cycles,
-               summary.timing.skipped_cycles, summary.rejected_messages, table(summary.timing));
+  log_info(fmt::format("{} cycles, {} skipped, {} messages rejected; times in\n{}", summary.timing.cycles,
+                       summary.timing.skipped_cycles, summary.rejected_messages, table(summary.timing)));
   return 0;
 }
 
 int start(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_color_mt("controller"));
-  spdlog::set_pattern("%n: %v");
   sidestep::CommandLine app{
       "Sidestep controller: steers a redundant arm to a moving target while the whole arm keeps clear of "
       "moving obstacles."};

@@ -47,6 +47,17 @@ double wall_s() {
   return seconds(CLOCK_REALTIME);
 }
 
+std::string utc_stamp() {
+  timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  tm utc;
+  gmtime_r(&now.tv_sec, &utc);
+  char second[sizeof "20260131T235959"];
+  strftime(second, sizeof second, "%Y%m%dT%H%M%S", &utc);
+  const std::string microsecond = std::to_string(1000000 + now.tv_nsec / 1000).substr(1);
+  return second + ("." + microsecond);
+}
+
 double thread_cpu_s() {
   return seconds(CLOCK_THREAD_CPUTIME_ID);
 }

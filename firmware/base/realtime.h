@@ -13,6 +13,9 @@ double monotonic_s();
 /// Seconds since 1970; jumps when the system time is set. For time stamps only.
 double wall_s();
 
+/// The present date and time in UTC, such as 20260131T235959.000001, for file names.
+std::string utc_stamp();
+
 /// CPU time that this thread has used, s.
 double thread_cpu_s();
 

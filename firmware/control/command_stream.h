@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The stream of commands to the arm. It starts from the measured arm and continues from its own last command. It ends
-/// in WAIT, in FAULT once at rest, and when the arm cannot be following it any more.
+/// The stream of commands to the arm. It starts from the measured arm; then every command continues the last one. It
+/// ends in WAIT, in FAULT once at rest, and when the arm cannot be following it any more.
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
 /// pushed, the commanded position also moves toward the measured one. Per joint, with the error
@@ -18,16 +18,17 @@ namespace sidestep {
 ///   0               for |e| <= F/2
 ///   |e| - F/2       for F/2 < |e| <= F
 ///   |e|             for |e| > F
-/// An arm that merely lags keeps up to F/2, so that its command is not held back; an arm beyond F has been moved, and
-/// the stream goes to it. It is closed at the speed from which the joint can still stop within that distance. The rate
-/// of the commanded position is the velocity plus this correction. The rate stays within the velocity limit, and its
-/// change per cycle within the acceleration limit.
+/// The first line is for an arm that lags a little behind its command, as every arm does. The last line is for an arm
+/// that something has pushed away. The correction that closes this part is the largest speed from which the joint can
+/// brake to rest within the part (stopping_velocity() in model/velocity_range.h). The rate of the commanded position is
+/// the commanded velocity plus the correction. The rate stays within the velocity limit, and its change per cycle
+/// within the acceleration limit.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
   JointVector velocity_radps;    ///< last commanded
   JointVector rate_radps;        ///< rate of the last commanded position: velocity plus correction
-  double stopped_s = -HUGE_VAL;  ///< when the arm last stopped because no command reached it in time
+  double stopped_s = -HUGE_VAL;  ///< when the driver last stopped the arm because cycles paused
 
   /// No stream runs, or the last command was at rest.
   bool at_rest() const;
@@ -42,10 +43,10 @@ void check_continuity(const Model& model, const MonitorResult& inputs, CommandSt
 /// smaller; 0 where their signs differ.
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream);
 
-/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. The
-/// following error acts as a position limit: the velocity does not move the command farther than following_error_rad
-/// away from the measured position, so that an arm that is held in place stops it. The mode matters because the stream
-/// catches up only in modes that move.
+/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position, with
+/// one more position limit. The velocity does not move the command farther than following_error_rad away from the
+/// measured position. So the command of an arm that is held in place comes to rest. Only in modes that move does the
+/// stream catch up; hence the mode.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
 /// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the
@@ -53,8 +54,9 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting);
 
-/// Whether the stream runs after this cycle. It starts with a fresh arm state that was received after the arm last
-/// stopped on its own. It runs in HOLD, TRACK and BRAKE, in FAULT until it is at rest, and not in WAIT.
+/// Whether the stream runs after this cycle. It runs in HOLD, TRACK and BRAKE, in FAULT until it is at rest, and not in
+/// WAIT. A stream starts only with a fresh arm state that was received after stopped_s: an older one shows the arm
+/// before its driver stopped it.
 bool stream_continues(const CommandStream& stream, Mode mode, const MonitorResult& inputs);
 
 /// A velocity within the limits: one uniform scale for the velocity limits, which keeps the direction, then each joint

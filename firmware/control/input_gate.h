@@ -24,9 +24,9 @@ struct Verdict {
 };
 
 /// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
-/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). Obstacles of a late
-/// set enter the memory; with neighbours the merger drops late sets before. Does not throw and
-/// does not allocate. Large: lives on the heap.
+/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). A late obstacle set
+/// is dropped, but its obstacles enter the memory. (With neighbours no late set gets here: the merger drops them.) Does
+/// not throw and does not allocate. Large: lives on the heap.
 class InputGate {
  public:
   InputGate(int joints, const Settings& settings, InputSource source);

@@ -8,23 +8,24 @@ namespace sidestep {
 
 /// What input monitoring stores from one cycle to the next.
 struct ArmMonitor {
-  int64_t count = 0;  ///< of the newest arm state, and its content:
-  int64_t utime = 0;
-  double received_s = 0.0;
-  JointVector position_rad;
+  int64_t count = 0;         ///< number of the newest arm state (Latest::count)
+  int64_t utime = 0;         ///< of the newest arm state
+  double received_s = 0.0;   ///< of the newest arm state
+  JointVector position_rad;  ///< of the newest arm state
   JointVector rate_radps;           ///< difference quotient of the last two positions
   double driver_started_s = 0.0;    ///< first state of the present arm driver
   double consistent_since_s = 0.0;  ///< since then arm states have been consistent
-  int skipped_in_a_row = 0;         ///< cycles
+  int skipped_in_a_row = 0;         ///< skipped cycles; 0 again after a cycle without skipped ones before it
   double cycle_s = 0.0;             ///< time of the last cycle
 };
 
 /// Whether the arm can still be executing the command stream; the input of the command stream (command_stream.h).
+/// An arm driver stops the arm by itself when it receives no command for 50 ms.
 struct ArmContinuity {
   bool arm_follows = true;          ///< the measured step is possible within the elapsed time
-  bool cycles_paused = false;       ///< no cycle for max(50 ms, 1.5 periods): the arm has begun to stop on its own
-  double arm_waited_until_s = 0.0;  ///< end of the arm's wait for a command, when it began to stop
-  bool clock_went_back = false;     ///< this cycle is earlier than the previous one
+  bool cycles_paused = false;       ///< no cycle for max(50 ms, 1.5 periods): the driver may have stopped the arm
+  double arm_waited_until_s = 0.0;  ///< after a pause of the cycles: the time at which the driver began to stop the arm
+  bool clock_went_back = false;     ///< this cycle is earlier than the previous one: stored times are not comparable
   double arm_received_s = 0.0;      ///< receipt of the newest arm state
 };
 

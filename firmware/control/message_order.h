@@ -4,8 +4,9 @@
 
 namespace sidestep {
 
-/// Time between the sending of two messages, s: the difference of their utimes (microseconds), but at most
-/// received_apart_s + slack_s. A larger difference is a jump of the sender's clock, not a delay of the network.
+/// Time between the sending of two messages, s, estimated as min(difference of their utimes, received_apart_s +
+/// slack_s). The network may have delayed one of them by slack_s more than the other. A difference of the utimes beyond
+/// that can only be a jump of the sender's clock. utime: microseconds.
 double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s);
 
 /// Decides by utime whether a message of one channel is newer than all messages accepted before it.
@@ -22,8 +23,8 @@ class MessageOrder {
   /// For a message that was not accepted: it is older than the newest one, not a repetition of it.
   bool is_late(int64_t utime) const { return any_ && utime < utime_; }
 
-  /// Time between the last two accepted messages, s: the larger of the difference of the receipt times and
-  /// sent_apart_s(..., restart_s). 0 for the first message.
+  /// Time between the last two accepted messages, s: max(received_apart_s, sent_apart_s(..., restart_s)), so as not to
+  /// underestimate what can have changed between them. 0 for the first message.
   double elapsed_s() const { return elapsed_s_; }
 
  private:

@@ -16,7 +16,7 @@ struct InputStatus {
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
   bool target_fresh = false;     ///< not older than timeouts.target_s
-  bool late = false;             ///< 3 or more cycles were skipped since the last one that ran in time
+  bool late = false;             ///< 3 or more cycles skipped in a row; 0 again after a cycle without a skipped one
   bool stop = false;             ///< the process has been asked to end
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
@@ -43,7 +43,7 @@ inline bool moves(Mode mode) {
 ///                              result is not finite
 ///   FAULT               HOLD   ready
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
-///                              3 or more cycles skipped since the last one that ran in time
+///                              3 or more cycles skipped in a row
 ///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///

@@ -16,8 +16,8 @@ bool plausible(const Obstacle& obstacle);
 bool sanitize(Target& target);
 bool sanitize(ObstacleSet& set);
 
-/// An obstacle at rest of a shape as reported from outside; size_m as in obstacle_t. The result is not plausible()
-/// where shape, size or orientation are invalid.
+/// Makes an obstacle at rest from the fields of a report; size_m as in obstacle_t. For an invalid shape, size or
+/// orientation the result is not plausible().
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& orientation, const Vector3& size_m);
 
 }  // namespace sidestep

@@ -20,13 +20,12 @@ class Foresight {
   ///
   /// The four calls between two assessments do nothing while the last forecast is good. Otherwise they search in turns:
   /// one call plans a candidate with plan_to_target(), or, if that fails and a collision is predicted, with
-  /// plan_retreat(). The next call runs a rollout with
-  /// the candidate and one with the present guide (or the law alone). A candidate that costs at
-  /// least 0.5 s less becomes the guide.
+  /// plan_retreat(). The next call runs a rollout with the candidate and one with the present guide (or the law alone).
+  /// A candidate that costs at least 0.5 s less becomes the guide.
   ///
-  /// The status becomes kWaiting, without knots, when three conditions hold: more than 50 planning calls in a row found
-  /// no guide to the target; there is no present guide; the last forecast does not arrive. The law alone then
-  /// continues.
+  /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
+  /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
+  /// arrive. The law alone then continues.
   ///
   /// A snapshot that is not tracking resets everything. The same sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
@@ -44,7 +43,7 @@ class Foresight {
   Guide guide_;
   Forecast expected_;              ///< under guide_
   Guide candidate_;                ///< a plan that has no rollout yet; no knots: none
-  int unsuccessful_searches_ = 0;  ///< since the guide was last changed or assessed as good
+  int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 
 }  // namespace sidestep

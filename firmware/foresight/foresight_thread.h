@@ -22,7 +22,7 @@ class ForesightThread {
   /// Loop: the guide to follow now; null with foresight switched off. Valid and unchanged until the next call.
   const Guide* latest();
 
-  /// Loop: the inputs of a cycle and the state that it led to.
+  /// Loop: the inputs of a cycle and the state that it led to. Takes the snapshot on the calling thread.
   void submit(const Inputs& inputs, const State& state, double now_s);
 
  private:

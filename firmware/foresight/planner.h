@@ -26,8 +26,8 @@ class Planner {
   /// ForesightStatus::kGuided; without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
 
-  /// Six tries for a guide to a configuration within 1 rad per joint where the arm stays clear up to the horizon.
-  /// Returns the first clear one, ForesightStatus::kWaiting; without knots if no try succeeds.
+  /// Six tries. The goal configuration is random, each joint within 1 rad of its present position. Returns the first
+  /// guide that is clear up to the horizon, with ForesightStatus::kWaiting; without knots if no try succeeds.
   Guide plan_retreat(const Snapshot& from);
 
  private:

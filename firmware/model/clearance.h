@@ -26,8 +26,8 @@ struct Clearance {
   Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 
   /// Pairs of a movable link shape and an obstacle within the Reach, unordered. The distance of a pair is the lesser of
-  /// its surface distances now and at the closest approach. Of more than kMaxNear pairs those with the least distance
-  /// are kept: a further pair replaces the pair with the greatest distance.
+  /// its surface distances now and at the closest approach. If there are more than kMaxNear, those with the least
+  /// distance are kept.
   BoundedList<NearPair, kMaxNear> near;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/model/square_matrix.h"
 #include "firmware/model/types.h"
 
 namespace sidestep {
@@ -27,7 +28,7 @@ JointVector damped_solve(
   constexpr int kRows = Jacobian::RowsAtCompileTime, kMaxRows = Jacobian::MaxRowsAtCompileTime;
   Eigen::Matrix<double, kRows, kRows, 0, kMaxRows, kMaxRows> gram = jacobian * jacobian.transpose();
   gram.diagonal().array() += lambda * lambda;
-  return jacobian.transpose() * gram.ldlt().solve(b);
+  return jacobian.transpose() * solve_ldlt(gram, b);
 }
 
 /// J* of a task Jacobian with `rows` rows, with the damping of paper eq (6), by an explicit inverse. A singular value
@@ -43,24 +44,22 @@ class DampedInverse {
     const double lambda2 = needs_damping(sigma_0, gram) ? damping2(lambda_0, sigma_0, gram) : 0.0;
     lambda_ = std::sqrt(lambda2);
     gram.diagonal().array() += lambda2;
-    inverse_ = gram.inverse();
+    inverse_ = inverse(gram);
   }
 
   double lambda() const { return lambda_; }
   JointVector operator*(const Task& x) const { return jacobian_.transpose().lazyProduct(inverse_ * x); }
 
  private:
-  using Gram = Eigen::Matrix<double, rows, rows>;
+  using Gram = SquareMatrix<rows>;
 
   /// False if all eigenvalues of J J^T exceed sigma_0^2: J J^T - sigma_0^2 I then has a Cholesky decomposition.
   static bool needs_damping(double sigma_0, const Gram& gram) {
-    const Gram beyond = gram - sigma_0 * sigma_0 * Gram::Identity();
-    return Eigen::LLT<Gram>(beyond).info() != Eigen::Success;
+    return !is_positive_definite<rows>(gram - sigma_0 * sigma_0 * Gram::Identity());
   }
 
   static double damping2(double lambda_0, double sigma_0, const Gram& gram) {
-    const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram, Eigen::EigenvaluesOnly);
-    const double sigma2 = std::max(0.0, eigen.eigenvalues()[0]), smallest = 1e-12;
+    const double sigma2 = std::max(0.0, least_eigenvalue(gram)), smallest = 1e-12;
     // Gains that damp nothing would leave a singular matrix.
     return std::max(damping_squared(lambda_0, sigma_0, std::sqrt(sigma2)), smallest - sigma2);
   }

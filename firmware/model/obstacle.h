@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Values as in obstacle_t. To add a shape:
+/// Values as in obstacle_t. The shapes of links are capsules throughout (Arm::shapes). To add a shape of obstacles:
 ///   - here: the value, a maker, and the core's data if the capsule does not hold it, with transformed(),
 ///     extrapolated() and inflation_m();
 ///   - model/proximity.cpp: its core (nearest points to a segment) and one case in with_core(), the only switch over

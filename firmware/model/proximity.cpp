@@ -129,9 +129,9 @@ double core_reach_m(const Obstacle& obstacle) {
   return with_core(obstacle, [](const auto& core) { return core.reach_m(); });
 }
 
-ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
+ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& present,
                                          double horizon_s) {
-  return with_core(obstacle, [&](const auto& core) { return core.closest_approach(link, now, horizon_s); });
+  return with_core(obstacle, [&](const auto& core) { return core.closest_approach(link, present, horizon_s); });
 }
 
 ClosestApproach predict_closest_approach(const Capsule& link, double radius_m, const Vector3& point,

@@ -61,12 +61,13 @@ double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double 
 /// or capsule, the radius of `capsule` for a box. A caller can discard pairs by the distance between axes alone.
 double core_reach_m(const Obstacle& obstacle);
 
-/// The closest approach within horizon_s, from now = measure_pair(link, obstacle). The obstacle translates at the
-/// velocity of its point now.on_obstacle. Of a sphere or capsule only that point, grown by the radius, is followed:
-/// exact for a sphere; other points of a capsule may come nearer. A box is followed as a whole, at no more than 5
-/// instants up to horizon_s; the nearest of these and of `now` is returned, so that the true closest approach may be
-/// nearer, but never farther.
-ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& now,
+/// The closest approach within horizon_s. `present` is the result of measure_pair(link, obstacle). The whole obstacle
+/// is assumed to translate at the velocity of its point present.on_obstacle.
+///   sphere   exact
+///   capsule  only that point, grown by the radius, is followed; other points of the capsule may come nearer
+///   box      sampled at the present and at no more than 5 instants up to horizon_s; the true closest approach may be
+///            nearer than the nearest sample, never farther
+ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& present,
                                          double horizon_s);
 
 /// The closest approach of a ball of radius_m around a moving point; exact.

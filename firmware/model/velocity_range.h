@@ -22,9 +22,10 @@ VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowes
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 
-/// The velocity v toward a position limit with |v| T + v^2 / (2 a) = |gap|: after one more period at v, braking at a
-/// stops the joint at the limit. gap_rad is the distance left to the limit, lower or upper; negative for a joint past
-/// it. v has the sign of the gap: positive toward the limit, negative back to it. Infinite for an infinite gap.
+/// The largest speed v toward a position limit with which the joint can still stop at the limit: one more period at v,
+/// then braking at the acceleration a, covers the gap, v T + v^2 / (2 a) = gap. gap_rad is the distance to the limit,
+/// positive before it, for the lower limit as for the upper one. For a joint past the limit gap and v are negative: v is
+/// the speed back to it. Infinite for an infinite gap.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);
 
 }  // namespace sidestep

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/model/square_matrix.h"
+
 namespace sidestep::campaign {
 namespace {
 
@@ -12,11 +14,10 @@ constexpr double kLambda = 0.08, kSigma = 0.08;  // largest damping factor; leas
 
 Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
   Matrix3 gram = jacobian * jacobian.transpose();
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix3>(gram, Eigen::EigenvaluesOnly).eigenvalues()[0];
-  const double sigma = std::sqrt(std::max(0.0, least));
+  const double sigma = std::sqrt(std::max(0.0, least_eigenvalue(gram)));
   const double lambda = sigma < kSigma ? kLambda * (1.0 - sigma / kSigma) : 0.0;
   gram.diagonal().array() += lambda * lambda;
-  return jacobian.transpose() * gram.ldlt().solve(tool_mps);
+  return jacobian.transpose() * solve_ldlt(gram, tool_mps);
 }
 
 /// Largest velocity from which a joint can still stop within gap_rad, rad/s.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <stdexcept>
 
 namespace sidestep::sim {
@@ -11,7 +10,7 @@ namespace {
 class Line {
  public:
   Line& add(double value) {
-    fmt::format_to(std::back_inserter(text_), "{}{:.17g}", text_.empty() ? "" : ",", value);
+    text_ += fmt::format("{}{:.17g}", text_.empty() ? "" : ",", value);
     return *this;
   }
 

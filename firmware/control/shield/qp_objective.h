@@ -20,9 +20,9 @@ struct QpSolution {
   double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the programme was solved repeatedly
 };
 
-/// Slack scales sigma_t of the hard and the pass tier, m/s. A row of tier t that is active with multiplier lambda is
-/// violated by sigma_t^2 lambda, so a hard row that competes with rows of other tiers yields a thousandth of what a
-/// pass row yields.
+/// Slack scales sigma_t of the hard and the pass tier, m/s. The slack of a tier is sigma_t^2 times the sum of the
+/// multipliers of its active rows. With equal multipliers the hard tier thus yields a thousandth of what the pass tier
+/// yields.
 constexpr double kHardSlackScale_mps = 1e-3;
 constexpr double kPassSlackScale_mps = 3e-2;
 

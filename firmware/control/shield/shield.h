@@ -45,19 +45,21 @@ struct ShieldResult {
 ///         l <= q' <= h              the range of joint velocities             (model/velocity_range.h)
 ///
 ///   u        nominal joint velocity, n x 1, rad/s
-///   J        tool Jacobian, 3 x n or 6 x n;  w = ShieldSettings::tool_weight, 1/m2, with 1 rad of the angular rows
-///            counted as 1 m. With it, obstacles are avoided in the null space of the tool's task where possible
+///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m
+///   w        ShieldSettings::tool_weight, 1/m2: this term makes the arm avoid obstacles in the null space of the
+///            tool's task where that is possible
 ///   a_i      1 x n: rate at which the distance of pair i grows with q';  b_i: least such rate, m/s
 ///   sigma_t  slack scale of tier t, m/s: a violation s costs 1/2 (s / sigma_t)^2. hard 1e-3, pass 3e-2,
 ///            comfort 1 / sqrt(comfort_weight) of the cycle: 2.2 at the target, 3e-2 far from it by default
 ///
-/// Two programmes a cycle. The first gives the plan: all three tiers, within `sustainable`; evasion may replace its
-/// solution. The second gives the velocity of the coming period: u is the plan, w = 0, only the hard tier, within
-/// `range`, which includes the acceleration limits.
+/// Two programmes a cycle. The first gives the plan: all three tiers, within `sustainable`. Evasion may replace this
+/// plan, and solves further programmes for it (evasion.h). The second programme gives the velocity of the coming
+/// period: u is the plan, w = 0, only the hard tier, within `range`, which includes the acceleration limits.
 ///
-/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows. Then
-/// each hard row with a q' + s_hard = b is fixed as a q' >= b - s_hard, without slack, and the programme is solved
-/// again, so that the other hard rows do not profit from this slack. A programme is solved at most 3 times in all.
+/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows. All hard
+/// rows share this slack, also those that could be met without it. Therefore the programme is solved again: each hard
+/// row that needs the whole slack (a q' + s_hard = b) becomes a q' >= b - s_hard without slack, and the slack of the
+/// others is minimised anew. A programme is solved at most 3 times in all.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps);
 

@@ -5,6 +5,7 @@
 #include <eiquadprog/eiquadprog-rt.hpp>
 
 #include "firmware/control/shield/small_active_set.h"
+#include "firmware/model/square_matrix.h"
 
 namespace sidestep {
 namespace {
@@ -12,32 +13,67 @@ namespace {
 constexpr int kMaxIterations = 200;
 constexpr int kMaxRounds = 3;
 
-/// The programme in the solver's form: min 1/2 x^T H x + g^T x  subject to  C x + c >= 0. The unknowns x are the joint
-/// velocities, then one scaled slack s_t / sigma_t per tier, so that its weight in H is 1 and its coefficient in a row
-/// is sigma_t. The solver's cost grows with the capacity of the problem, not with its use; hence a size per number of
-/// joints and rows. Unused rows read 0 x + 1 >= 0.
+/// The unknowns x are the joint velocities, then one scaled slack s_t / sigma_t per tier, so that its weight in H is 1
+/// and its coefficient in a row is sigma_t.
+template <int joint_capacity>
+using Unknowns = Eigen::Matrix<double, joint_capacity + kTiers, 1>;
+
+/// The objective in the solver's form: 1/2 x^T H x + g^T x.
+template <int joint_capacity>
+struct Objective {
+  using Hessian = SquareMatrix<joint_capacity + kTiers>;
+
+  Hessian hessian = Hessian::Identity();
+  Hessian inverse_root = Hessian::Identity();  ///< R with R R' = hessian^-1
+  Unknowns<joint_capacity> gradient = Unknowns<joint_capacity>::Zero();
+  double constant;
+
+  explicit Objective(const QpObjective& objective) {
+    const Eigen::Index n = objective.nominal_radps.size();
+    if (objective.tool_weight > 0.0)
+      objective.tool_jacobian.rows() == 6 ? add_tool_cost<6>(objective) : add_tool_cost<3>(objective);
+    gradient.head(n) = -hessian.topLeftCorner(n, n).lazyProduct(objective.nominal_radps);
+    constant = -0.5 * gradient.head(n).dot(objective.nominal_radps);
+  }
+
+  double cost(const Unknowns<joint_capacity>& x) const { return constant + 0.5 * x.dot(hessian * x) + gradient.dot(x); }
+
+ private:
+  /// The tool's cost makes the joints' block of the Hessian I + w J^T J; the slacks' block remains the identity. A root
+  /// R of the inverse, R R^T = (I + w J^T J)^-1, is I - (L^-1 J)^T (L + N)^-1 J with N = I / sqrt(w) and L L^T = J J^T
+  /// + N N (Andrews' square-root form of the Kalman update).
+  template <int rows>
+  void add_tool_cost(const QpObjective& objective) {
+    using Tall = Eigen::Matrix<double, rows, joint_capacity>;
+    using Square = SquareMatrix<rows>;
+    Tall jacobian = Tall::Zero();
+    jacobian.leftCols(objective.tool_jacobian.cols()) = objective.tool_jacobian;
+    const Square n = Square::Identity() / std::sqrt(objective.tool_weight);
+    const Square gram = jacobian.lazyProduct(jacobian.transpose()) + n * n;
+    const Square root = cholesky_root(gram);
+    const Square sum = root + n;
+    const Tall a = inverse(root).lazyProduct(jacobian), b = inverse(sum).lazyProduct(jacobian);
+    hessian.template topLeftCorner<joint_capacity, joint_capacity>() +=
+        objective.tool_weight * jacobian.transpose().lazyProduct(jacobian);
+    inverse_root.template topLeftCorner<joint_capacity, joint_capacity>() -= a.transpose().lazyProduct(b);
+  }
+};
+
+/// The constraints in the solver's form, C x + c >= 0, and the solver. Its cost grows with the capacity, not with the
+/// number of rows; hence several sizes for the usual number of joints. Unused rows read 0 x + 1 >= 0.
 template <int joint_capacity, int row_capacity>
-struct Problem {
+struct Constraints {
   static constexpr int kUnknowns = joint_capacity + kTiers;
   static constexpr int kSlacks = 2 * joint_capacity;
   static constexpr int kRows = kSlacks + kTiers;
   static constexpr int kConditions = kRows + row_capacity;
 
-  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-  using Hessian = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-
-  Hessian hessian = Hessian::Identity();
-  Hessian inverse_root = Hessian::Identity();  ///< R with R R' = hessian^-1
-  Unknowns gradient = Unknowns::Zero();
   Eigen::Matrix<double, kConditions, kUnknowns> conditions = Eigen::Matrix<double, kConditions, kUnknowns>::Zero();
   Eigen::Matrix<double, kConditions, 1> offsets = Eigen::Matrix<double, kConditions, 1>::Ones();
 
-  Problem(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
-    const int n = static_cast<int>(objective.nominal_radps.size());
-    if (objective.tool_weight > 0.0)
-      objective.tool_jacobian.rows() == 6 ? add_tool_cost<6>(objective) : add_tool_cost<3>(objective);
-    gradient.head(n) = -hessian.topLeftCorner(n, n).lazyProduct(objective.nominal_radps);
-    for (int i = 0; i < n; ++i) {
+  Constraints(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
+    const Eigen::Index n = objective.nominal_radps.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
       conditions(2 * i, i) = 1.0;
       offsets[2 * i] = -range.lower_radps[i];
       conditions(2 * i + 1, i) = -1.0;
@@ -49,47 +85,28 @@ struct Problem {
     }
     for (int i = 0; i < rows.size(); ++i) {
       const ConstraintRow& row = rows[i];
-      conditions.row(kRows + i).head(n) = row.row.transpose();
+      for (Eigen::Index j = 0; j < n; ++j) conditions(kRows + i, j) = row.row[j];
       conditions(kRows + i, joint_capacity + static_cast<int>(row.tier)) = slack_scale_mps(objective, row.tier);
       offsets[kRows + i] = -row.bound;
     }
   }
 
-  /// The tool's cost makes the joints' block of the Hessian I + w J^T J; the slacks' block remains the identity. A root
-  /// R of the inverse, R R^T = (I + w J^T J)^-1, is I - (L^-1 J)^T (L + N)^-1 J with N = I / sqrt(w) and L L^T = J J^T
-  /// + N N (Andrews' square-root form of the Kalman update).
-  template <int rows>
-  void add_tool_cost(const QpObjective& objective) {
-    using Tall = Eigen::Matrix<double, rows, joint_capacity>;
-    using Square = Eigen::Matrix<double, rows, rows>;
-    Tall jacobian = Tall::Zero();
-    jacobian.leftCols(objective.tool_jacobian.cols()) = objective.tool_jacobian;
-    const Square n = Square::Identity() / std::sqrt(objective.tool_weight);
-    const Square gram = jacobian.lazyProduct(jacobian.transpose()) + n * n;
-    const Square root = gram.llt().matrixL();
-    const Square sum = root + n;
-    const Tall a = root.inverse().lazyProduct(jacobian), b = sum.inverse().lazyProduct(jacobian);
-    hessian.template topLeftCorner<joint_capacity, joint_capacity>() +=
-        objective.tool_weight * jacobian.transpose().lazyProduct(jacobian);
-    inverse_root.template topLeftCorner<joint_capacity, joint_capacity>() -= a.transpose().lazyProduct(b);
-  }
-
-  bool solve(Unknowns& x) const {
+  bool solve(const Objective<joint_capacity>& objective, Unknowns<joint_capacity>& x) const {
     eiquadprog::solvers::RtEiquadprog<kUnknowns, 0, kConditions> solver;
     solver.setMaxIter(kMaxIterations);
-    solver.m_J = inverse_root;
+    solver.m_J = objective.inverse_root;
     solver.is_inverse_provided_ = true;
     // eiquadprog 1.3.2 starts from +H^-1 g instead of -H^-1 g when the inverse root is provided (the branch lacks
     // x = -x), so it is given -g.
-    const Unknowns start_gradient = -gradient;
-    const auto status = solver.solve_quadprog(hessian, start_gradient, Eigen::Matrix<double, 0, kUnknowns>(),
+    const Unknowns<joint_capacity> start_gradient = -objective.gradient;
+    const auto status = solver.solve_quadprog(objective.hessian, start_gradient, Eigen::Matrix<double, 0, kUnknowns>(),
                                               Eigen::Matrix<double, 0, 1>(), conditions, offsets, x);
     return status == eiquadprog::solvers::RT_EIQUADPROG_OPTIMAL && x.allFinite();
   }
 
   /// Replaces the shared slack of the violated hard rows by the constant that they need, so that the slack no longer
   /// relaxes the other hard rows.
-  void freeze_violated_hard_rows(const Unknowns& x, double hard_slack_mps) {
+  void freeze_violated_hard_rows(const Unknowns<joint_capacity>& x, double hard_slack_mps) {
     for (int c = kRows; c < kConditions; ++c) {
       double& coefficient = conditions(c, joint_capacity);
       const double rounding = 1e-6;
@@ -104,36 +121,30 @@ template <int joint_capacity, int row_capacity>
 QpSolution solve_sized(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
   const Eigen::Index n = objective.nominal_radps.size();
   QpSolution solution{objective.nominal_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
-  Problem<joint_capacity, row_capacity> problem(rows, range, objective);
-  const double constant_cost = -0.5 * problem.gradient.head(n).dot(objective.nominal_radps);
+  const Objective<joint_capacity> cost(objective);
+  Constraints<joint_capacity, row_capacity> constraints(rows, range, objective);
   for (int round = 0; round < kMaxRounds; ++round) {
-    typename Problem<joint_capacity, row_capacity>::Unknowns x;
-    if (!problem.solve(x)) break;
+    Unknowns<joint_capacity> x;
+    if (!constraints.solve(cost, x)) break;
     solution.velocity_radps = x.head(n).cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
-    solution.cost = constant_cost + 0.5 * x.dot(problem.hessian * x) + problem.gradient.dot(x);
+    solution.cost = cost.cost(x);
     const double hard_slack_mps = x[joint_capacity] * kHardSlackScale_mps;
     solution.hard_slack_mps = std::max(solution.hard_slack_mps, hard_slack_mps);
     if (hard_slack_mps < kNegligibleSlack_mps) break;
-    problem.freeze_violated_hard_rows(x, hard_slack_mps);
+    constraints.freeze_violated_hard_rows(x, hard_slack_mps);
   }
   return solution;
-}
-
-template <int joint_capacity>
-QpSolution solve_for(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
-  constexpr int kSmall = 12, kMedium = 28;
-  if (rows.size() <= kSmall) return solve_sized<joint_capacity, kSmall>(rows, range, objective);
-  if (rows.size() <= kMedium) return solve_sized<joint_capacity, kMedium>(rows, range, objective);
-  return solve_sized<joint_capacity, kMaxRows>(rows, range, objective);
 }
 
 }  // namespace
 
 QpSolution solve(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
   if (const auto exact = solve_small_active_set(rows, range, objective)) return *exact;
-  constexpr int kCommonJoints = 7;
-  return objective.nominal_radps.size() <= kCommonJoints ? solve_for<kCommonJoints>(rows, range, objective)
-                                                         : solve_for<kMaxJoints>(rows, range, objective);
+  constexpr int kCommonJoints = 7, kSmall = 12, kMedium = 28;
+  if (objective.nominal_radps.size() > kCommonJoints) return solve_sized<kMaxJoints, kMaxRows>(rows, range, objective);
+  if (rows.size() <= kSmall) return solve_sized<kCommonJoints, kSmall>(rows, range, objective);
+  if (rows.size() <= kMedium) return solve_sized<kCommonJoints, kMedium>(rows, range, objective);
+  return solve_sized<kCommonJoints, kMaxRows>(rows, range, objective);
 }
 
 }  // namespace sidestep

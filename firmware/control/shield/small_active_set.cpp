@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/model/square_matrix.h"
+
 namespace sidestep {
 namespace {
 
@@ -14,9 +16,9 @@ bool leaves(const VelocityRange& range, const JointVector& velocity_radps) {
 template <int rows>
 TaskJacobian woodbury_factor(const QpObjective& objective) {
   const Eigen::Matrix<double, rows, Eigen::Dynamic, 0, rows, kMaxJoints> jacobian = objective.tool_jacobian;
-  Eigen::Matrix<double, rows, rows> gram = jacobian.lazyProduct(jacobian.transpose());
+  SquareMatrix<rows> gram = jacobian.lazyProduct(jacobian.transpose());
   gram.diagonal().array() += 1.0 / objective.tool_weight;
-  return gram.inverse().lazyProduct(jacobian);
+  return inverse(gram).lazyProduct(jacobian);
 }
 
 /// Active-set method: activates the most violated row until none is violated. A row whose multiplier turns negative is

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Solves the programme of shield.h exactly in two cases, and returns nothing in all others:
+/// Finds the exact solution of the programme of shield.h in two cases, and returns nothing in all others:
 ///   - at the solution at most three constraint rows are active and no bound of the range is;
 ///   - w = 0, and u clipped to the range meets all rows (with H = I the joints are independent, so clipping is exact).
 /// It also returns nothing with a hard slack above kNegligibleSlack_mps, or if 6 changes of the active set do not find

@@ -9,9 +9,10 @@ namespace sidestep {
 
 /// What foresight predicts for the coming seconds; values as in controller_status_t.
 enum class ForesightStatus : int8_t {
-  kDirect = 0,   ///< no guide: the law alone, also while a guide is still being searched
+  kDirect = 0,   ///< no guide: the law alone
   kGuided = 1,   ///< the arm follows a guide, because the law alone would collide, be late or not arrive
-  kWaiting = 2,  ///< no guide to the target is known; with knots: the arm retreats to the last knot
+  kWaiting = 2,  ///< the target cannot be reached at present: with knots the arm retreats to the last knot, without
+                 ///< knots the law continues alone
 };
 
 constexpr int kMaxKnots = 4;

@@ -79,11 +79,11 @@ struct Timeouts {
   double coast_s = 0.3;             ///< how long a jumped or vanished obstacle is remembered (obstacle_memory.h)
 };
 
-/// Measurement errors of reported obstacles. Obstacles are extrapolated by the latency and grow by the other two.
+/// Measurement errors of reported obstacles. Obstacles are extrapolated by the latency; the other two let them grow.
 struct ObstacleTrust {
   double latency_s = 0.0;                ///< from the measurement to the receipt; obstacles are extrapolated by it
   double uncertainty_m = 0.0;            ///< of a reported position
-  double acceleration_bound_mps2 = 0.0;  ///< obstacles grow by 1/2 a t^2 over the age of the report
+  double acceleration_bound_mps2 = 0.0;  ///< a in the growth of obstacles (control/extrapolation.h)
 };
 
 /// The settings of the control cycle. Read from YAML by io/config.
@@ -97,8 +97,9 @@ struct Settings {
   ForesightSettings foresight;
   bool wait_for_obstacles = true;  ///< false: before the first obstacle set there are no obstacles
   ObstacleTrust obstacle_trust;
-  double obstacle_speed_bound_mps =
-      2.0;  ///< obstacles of a timed-out set grow by this speed x age; beyond it a position change counts as a jump
+  /// The speed that an obstacle may have whatever velocity is reported: for the growth of obstacles
+  /// (control/extrapolation.h) and for jumps (control/obstacle_memory.h).
+  double obstacle_speed_bound_mps = 2.0;
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
   double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint (command_stream.h)
 

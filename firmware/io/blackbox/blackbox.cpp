@@ -1,11 +1,11 @@
 #include "firmware/io/blackbox/blackbox.h"
 
-#include <fmt/chrono.h>
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "firmware/base/log.h"
 #include "firmware/base/realtime.h"
 #include "firmware/io/lcm/message_bytes.h"
 
@@ -40,13 +40,6 @@ void remove_oldest(const fs::path& folder) {
     if (is_log(entry.path())) logs.push_back(entry.path());
   std::sort(logs.begin(), logs.end());
   for (size_t i = 0; i + kMaxLogs < logs.size(); ++i) fs::remove(logs[i]);
-}
-
-fs::path name_for(const std::string& reason) {
-  const double now_s = wall_s();
-  const auto second = static_cast<time_t>(now_s);
-  const auto microsecond = static_cast<int>((now_s - static_cast<double>(second)) * 1e6);
-  return fmt::format("blackbox-{:%Y%m%dT%H%M%S}.{:06d}-{}.lcmlog", fmt::gmtime(second), microsecond, reason);
 }
 
 }  // namespace
@@ -98,16 +91,17 @@ void Blackbox::run() {
 
 void Blackbox::write(const std::string& reason) {
   ring_.copy(copy_);
-  const fs::path file = fs::path(config_.blackbox.folder) / name_for(reason), part = file.string() + ".part";
+  const fs::path file = fs::path(config_.blackbox.folder) / fmt::format("blackbox-{}-{}.lcmlog", utc_stamp(), reason);
+  const fs::path part = file.string() + ".part";
   try {
     fs::create_directories(file.parent_path());
     const int64_t cycles = write_blackbox_log(part, config_, reason, copy_);
     fs::rename(part, file);
     remove_oldest(file.parent_path());
-    spdlog::info("blackbox: {} cycles in {}", cycles, file.string());
+    log_info(fmt::format("blackbox: {} cycles in {}", cycles, file.string()));
     failed_ = false;
   } catch (const std::exception& error) {
-    spdlog::warn("blackbox: {}", error.what());
+    log_warning(fmt::format("blackbox: {}", error.what()));
     std::error_code ignored;
     fs::remove(part, ignored);
     failed_ = true;

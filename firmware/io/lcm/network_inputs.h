@@ -12,17 +12,22 @@ namespace sidestep {
 
 /// The inbound side of a loop: decodes each message (message_decoder.h), merges the obstacles of several senders
 /// (obstacle_merger.h; without neighbours the set goes on unchanged), passes the value through the input gate
-/// (input_gate.h) and counts rejected messages. For one thread. Does not throw; its buffers grow to the largest message
-/// of each kind seen so far. Large: lives on the heap.
+/// (input_gate.h) and counts rejected messages. Does not throw; its buffers grow to the largest message of each kind
+/// seen so far. Large: lives on the heap.
+///
+/// Owners: the socket owns the bytes of a packet, which are valid during the call. The caller owns `received`. In real
+/// time a receiving thread makes all calls; there `received` is the draft slot of a triple buffer, one for each kind of
+/// message. The thread numbers an accepted message (Received::count) and publishes the slot; the loop's thread reads
+/// the newest one. In lockstep the loop's thread does all of this.
 class NetworkInputs {
  public:
   NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
                 bool lockstep);
   ~NetworkInputs();
 
-  /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt
-  /// time, which is that of the oldest part for a merged set;
-  /// otherwise its content is arbitrary. Received::count is not changed. now_s: local time of receipt.
+  /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt time;
+  /// otherwise its content is arbitrary. For a set merged from several senders the bytes are empty, and the receipt time
+  /// is that of the oldest part. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);
   /// part 0: the own channel; part k: the k-th neighbour, from 1.

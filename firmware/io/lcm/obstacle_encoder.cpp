@@ -4,6 +4,8 @@
 #include <sidestep/obstacles_t.hpp>
 #include <vector>
 
+#include "firmware/model/rotation.h"
+
 namespace sidestep {
 namespace {
 
@@ -26,7 +28,7 @@ void encode_shape(const Obstacle& obstacle, obstacle_t& message) {
   const Capsule& capsule = obstacle.capsule;
   const Vector3 axis = capsule.end - capsule.start, size_m(capsule.radius_m, axis.norm(), 0.0);
   if (axis.isZero(0.0)) return encode_shape(obstacle_t::SPHERE, Quaternion::Identity(), size_m, message);
-  encode_shape(obstacle_t::CAPSULE, Quaternion::FromTwoVectors(Vector3::UnitZ(), axis), size_m, message);
+  encode_shape(obstacle_t::CAPSULE, rotation_from_z(axis), size_m, message);
 }
 
 obstacle_t to_message(const Obstacle& obstacle) {

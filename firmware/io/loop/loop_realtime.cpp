@@ -1,10 +1,11 @@
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <thread>
 
+#include "firmware/base/log.h"
 #include "firmware/base/realtime.h"
 #include "firmware/base/triple_buffer.h"
 #include "firmware/io/lcm/network_inputs.h"
@@ -118,7 +119,7 @@ class Loop {
 /// Warns once when a real-time service is not permitted, and marks every status. The loop runs nevertheless.
 void warn_unless(bool granted, const char* service, const std::string& why_not, int& degraded) {
   if (granted || degraded & kLimitingNotRealtime) return;
-  spdlog::warn("{} is not permitted ({}); the loop may be late", service, why_not);
+  log_warning(fmt::format("{} is not permitted ({}); the loop may be late", service, why_not));
   degraded |= kLimitingNotRealtime;
 }
 

@@ -10,6 +10,7 @@
 #include "firmware/base/fail.h"
 #include "firmware/model/load/link_shapes.h"
 #include "firmware/model/load/urdf_file.h"
+#include "firmware/model/rotation.h"
 
 namespace sidestep {
 namespace {
@@ -94,8 +95,7 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
       // Rotate the frame so that its z axis is the joint's axis; the rest of the chain is expressed in this frame.
       const urdf::Vector3& axis = link.parent_joint->axis;
       Eigen::Isometry3d link_from_body = Eigen::Isometry3d::Identity();
-      link_from_body.linear() =
-          Quaternion::FromTwoVectors(Vector3::UnitZ(), Vector3(axis.x, axis.y, axis.z)).toRotationMatrix();
+      link_from_body.linear() = rotation_from_z(Vector3(axis.x, axis.y, axis.z)).toRotationMatrix();
       arm.joint_placement[++arm.joints] = body_from_link * link_from_body;
       arm.joint_names.push_back(link.parent_joint->name);
       append_limits(arm.limits, *link.parent_joint);
