@@ -33,8 +33,8 @@ struct CommandStream {
   bool at_rest() const;
 };
 
-/// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the measured arm could not
-/// have come from the last command, or when the driver has just started.
+/// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the arm is elsewhere after
+/// a silence, or when the driver has just started.
 void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream);
 
 /// The first state of a new stream: the position that the drives hold (else the measured one), and per joint the

@@ -48,7 +48,7 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   if (!snapshot.tracking) return;
   snapshot.now_s = now_s;
   snapshot.state = state;
-  snapshot.arm = *inputs.arm.message;
+  snapshot.arm = state.arm_monitor.accepted.state;
   snapshot.target = extrapolated(inputs.target, now_s);
 
   NearestSelection nearest(snapshot.nearby, model.settings.foresight.horizon_s);
