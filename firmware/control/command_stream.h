@@ -20,8 +20,8 @@ namespace sidestep {
 ///   |e|             for |e| > F
 /// An arm that merely lags keeps up to F/2, so that its command is not held back; an arm beyond F has been moved, and
 /// the stream goes to it. It is closed at the speed from which the joint can still stop within that distance. The rate
-/// of the commanded position is the velocity plus this correction. The rate stays within the velocity limit, and its
-/// change per cycle within the acceleration limit.
+/// of the commanded position is the velocity plus this correction. Its change per cycle stays within the acceleration
+/// limit, and as far as that permits the rate stays within the velocity limit and stops before the position limits.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
