@@ -98,7 +98,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 
-  const Target target = inputs.target.message ? extrapolated(inputs.target, now_s) : Target{};
+  const Target target = inputs.target.message ? extrapolated(model.arm, poses, inputs.target, now_s) : Target{};
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;

@@ -49,7 +49,8 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   snapshot.now_s = now_s;
   snapshot.state = state;
   snapshot.arm = state.arm_monitor.accepted.state;
-  snapshot.target = extrapolated(inputs.target, now_s);
+  const LinkPoses poses = forward_kinematics(model.arm, snapshot.arm.position_rad);
+  snapshot.target = extrapolated(model.arm, poses, inputs.target, now_s);
 
   NearestSelection nearest(snapshot.nearby, model.settings.foresight.horizon_s);
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);
