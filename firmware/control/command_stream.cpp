@@ -5,6 +5,8 @@
 namespace sidestep {
 namespace {
 
+constexpr double kRounding_rad = 1e-9;
+
 /// The value of smaller magnitude, or 0 where the signs differ.
 double minmod(double a, double b) {
   if (a * b <= 0.0) return 0.0;
@@ -21,7 +23,8 @@ double error_to_close_rad(const Model& model, const CommandStream& stream, const
 }
 
 /// Rate of a joint's commanded position, rad/s: the commanded velocity, plus the correction that closes a large
-/// following error, within the joint's velocity and acceleration limits.
+/// following error. Within the joint's acceleration limit, which has precedence, its velocity limit and the speed from
+/// which it can stop before its position limits.
 double commanded_rate(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm, int joint,
                       double velocity_radps) {
   const double gap_rad = moves(mode) ? error_to_close_rad(model, stream, arm, joint) : 0.0;
@@ -29,8 +32,13 @@ double commanded_rate(const Model& model, Mode mode, const CommandStream& stream
   if (gap_rad == 0.0 && last_radps == stream.velocity_radps[joint]) return velocity_radps;
   const double period_s = model.settings.period_s(), acceleration_radps2 = model.arm.limits.acceleration_radps2[joint];
   const double fastest_radps = model.arm.limits.velocity_radps[joint], change_radps = acceleration_radps2 * period_s;
+  const auto stopping_radps = [&](double distance_rad) {
+    return std::clamp(stopping_velocity(distance_rad, acceleration_radps2, period_s), -fastest_radps, fastest_radps);
+  };
+  const double lowest_radps = stopping_radps(model.arm.limits.lower_rad[joint] - stream.position_rad[joint]);
+  const double highest_radps = stopping_radps(model.arm.limits.upper_rad[joint] - stream.position_rad[joint]);
   const double closer_radps = velocity_radps + stopping_velocity(gap_rad, acceleration_radps2, period_s);
-  return std::clamp(std::clamp(closer_radps, -fastest_radps, fastest_radps), last_radps - change_radps,
+  return std::clamp(std::clamp(closer_radps, lowest_radps, highest_radps), last_radps - change_radps,
                     last_radps + change_radps);
 }
 
@@ -39,9 +47,9 @@ JointVector integrate(const Model& model, const CommandStream& stream) {
   const JointLimits& limits = model.arm.limits;
   JointVector position_rad = stream.position_rad + stream.rate_radps * model.settings.period_s();
   for (int i = 0; i < model.arm.joints; ++i) {
-    // The clamp removes rounding only. A joint that is outside its limits is not moved to them in one step.
-    const bool inside = stream.position_rad[i] >= limits.lower_rad[i] && stream.position_rad[i] <= limits.upper_rad[i];
-    if (inside) position_rad[i] = std::clamp(position_rad[i], limits.lower_rad[i], limits.upper_rad[i]);
+    // Removes rounding only. A joint that overshoots is brought back by its velocity, not in one step.
+    const double within_rad = std::clamp(position_rad[i], limits.lower_rad[i], limits.upper_rad[i]);
+    if (std::abs(position_rad[i] - within_rad) < kRounding_rad) position_rad[i] = within_rad;
   }
   return position_rad;
 }

@@ -21,8 +21,8 @@ namespace sidestep {
 /// The first line is for an arm that lags a little behind its command, as every arm does. The last line is for an arm
 /// that something has pushed away. The correction that closes this part is the largest speed from which the joint can
 /// brake to rest within the part (stopping_velocity() in model/velocity_range.h). The rate of the commanded position is
-/// the commanded velocity plus the correction. The rate stays within the velocity limit, and its change per cycle
-/// within the acceleration limit.
+/// the commanded velocity plus the correction. Its change per cycle stays within the acceleration limit. As far as that
+/// permits, the rate stays within the velocity limit and stops before the position limits.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
@@ -34,8 +34,8 @@ struct CommandStream {
   bool at_rest() const;
 };
 
-/// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the measured arm could not
-/// have come from the last command, or when the driver has just started.
+/// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the arm is elsewhere after
+/// a silence, or when the driver has just started.
 void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream);
 
 /// The first state of a new stream: the position that the drives hold (else the measured one), and per joint the

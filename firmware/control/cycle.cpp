@@ -85,11 +85,11 @@ void report_scene(const LawInput& input, bool has_target, Report& report) {
   if (nearest.obstacle >= 0) report.nearest_obstacle = input.obstacles.at(nearest.obstacle).id;
 }
 
-/// From the measured arm to its command. There is an arm state.
+/// From the accepted arm state to its command. There is one.
 void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& monitored, double now_s, StageProbe& probe,
               Result& result) {
   State& next = result.next;
-  const ArmState& arm = *inputs.arm.message;
+  const ArmState& arm = next.arm_monitor.accepted.state;
   const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad);
   probe.passed(Stage::kMonitor);
 
@@ -98,7 +98,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 
-  const Target target = inputs.target.message ? extrapolated(inputs.target, now_s) : Target{};
+  const Target target = inputs.target.message ? extrapolated(model.arm, poses, inputs.target, now_s) : Target{};
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;
@@ -136,7 +136,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   const bool was_running = next.stream.running;
   if (monitored.status.arm_known) {
     if (!was_running) {
-      start_stream(model, *inputs.arm.message, next.arm_monitor.rate_radps, next.stream);
+      start_stream(model, next.arm_monitor.accepted.state, next.arm_monitor.rate_radps, next.stream);
       next.planned.valid = false;
     }
     NoProbe none;

@@ -25,8 +25,20 @@ Target extrapolated(const Target& target, double dt_s) {
   return later;
 }
 
-Target extrapolated(const Latest<Target>& latest, double now_s) {
-  return extrapolated(*latest.message, latest.age_s(now_s));
+Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target) {
+  const TaskJacobian jacobian = tool_jacobian(poses, 6);
+  const auto followable_share = [&](const PointJacobian& rows, const Vector3& velocity) {
+    const double along = (rows.transpose() * velocity).cwiseAbs().dot(arm.limits.velocity_radps);
+    return along < velocity.squaredNorm() ? along / velocity.squaredNorm() : 1.0;
+  };
+  Target bounded = target;
+  bounded.velocity_mps *= followable_share(jacobian.topRows<3>(), target.velocity_mps);
+  bounded.angular_velocity_radps *= followable_share(jacobian.bottomRows<3>(), target.angular_velocity_radps);
+  return bounded;
+}
+
+Target extrapolated(const Arm& arm, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
+  return extrapolated(bounded_speed(arm, poses, *latest.message), latest.age_s(now_s));
 }
 
 }  // namespace sidestep

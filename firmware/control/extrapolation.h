@@ -3,6 +3,7 @@
 #include "firmware/control/types/inputs.h"
 #include "firmware/control/types/model.h"
 #include "firmware/model/clearance.h"
+#include "firmware/model/kinematics.h"
 
 namespace sidestep {
 
@@ -16,7 +17,13 @@ ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obsta
 /// The target dt_s later, at its own linear and angular velocity.
 Target extrapolated(const Target& target, double dt_s);
 
-/// The newest target, extrapolated from its receipt to now_s. There must be one.
-Target extrapolated(const Latest<Target>& latest, double now_s);
+/// The target with each of its velocities v (linear, angular) scaled down to what the joint velocity limits h permit in
+/// this configuration: |v| <= sum_i |n . J_i| h_i, n = v / |v|, J_i the tool Jacobian's column of joint i. No joint
+/// velocity within the limits moves the tool faster along n, so a target that the arm can follow is not changed. A
+/// larger velocity would only outweigh what the shield trades against it.
+Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
+
+/// The newest target, its velocities bounded as above, extrapolated from its receipt to now_s. There must be one.
+Target extrapolated(const Arm& arm, const LinkPoses& poses, const Latest<Target>& latest, double now_s);
 
 }  // namespace sidestep

@@ -13,10 +13,10 @@ constexpr double kArmWaits_s = 0.05;  // an arm without commands for longer stop
 constexpr double kSensorNoise_rad = 1e-3;
 constexpr double kRounding_s = 1e-9;
 
-/// Whether the arm can have come from the monitored state to this one within dt_s and one period.
-bool reachable(const Model& model, const ArmMonitor& before, const ArmState& arm, double dt_s) {
+/// Whether the arm can have come from this state to the other within dt_s and one period.
+bool reachable(const Model& model, const ArmState& from, const ArmState& arm, double dt_s) {
   if (dt_s <= 0.0) return false;
-  const JointVector step_rad = (arm.position_rad - before.position_rad).cwiseAbs();
+  const JointVector step_rad = (arm.position_rad - from.position_rad).cwiseAbs();
   const JointVector allowed_rad = model.arm.limits.velocity_radps * (dt_s + model.settings.period_s()) +
                                   JointVector::Constant(step_rad.size(), kSensorNoise_rad);
   return (step_rad.array() <= allowed_rad.array()).all();
@@ -25,12 +25,45 @@ bool reachable(const Model& model, const ArmMonitor& before, const ArmState& arm
 /// Whether this may be the first state of another driver: its clock started over, or no state came for longer than
 /// the start guard.
 bool is_new_driver(double start_guard_s, const Latest<ArmState>& arm, const ArmMonitor& before) {
-  return before.count == 0 || arm.message->utime < before.utime || arm.received_s - before.received_s > start_guard_s;
+  return before.count == 0 || arm.message->utime < before.accepted.state.utime ||
+         arm.received_s - before.received_s > start_guard_s;
 }
 
 /// A limit for the time between two arm states as the cycles see them; at least one and a half periods.
 double longest_gap_s(const Model& model, double limit_s) {
   return std::max(limit_s, 1.5 * model.settings.period_s());
+}
+
+/// Time from an accepted state to a newer one, s.
+double elapsed_since(const AcceptedArmState& from, const Latest<ArmState>& arm, double lost_s) {
+  return sent_apart_s(from.state.utime, arm.message->utime, arm.received_s - from.received_s, lost_s);
+}
+
+/// Compares a new arm state with the accepted ones and accepts it unless it is an outlier. There is an accepted one.
+void compare_arm(const Model& model, const Latest<ArmState>& arm, double now_s, ArmMonitor& monitor,
+                 MonitorResult& result) {
+  const AcceptedArmState &last = monitor.accepted, &before = monitor.before;
+  const double lost_s = longest_gap_s(model, model.settings.timeouts.arm_state_lost_s);
+  const double by_receipt_s = arm.received_s - last.received_s;
+  const double elapsed_s = elapsed_since(last, arm, lost_s);
+  const bool clock_back = elapsed_s <= 0.0;
+  const bool silence = arm.received_s - monitor.received_s > lost_s;
+  const bool gap = by_receipt_s > lost_s;
+  const bool agrees = reachable(model, last.state, *arm.message, elapsed_s);
+  if (gap || !agrees) monitor.consistent_since_s = now_s;
+
+  const bool bridges = model.settings.bridges_outliers && !clock_back;
+  const bool outliers_persist = gap && !silence && !agrees;
+  result.status.arm_inconsistent = outliers_persist || (!agrees && !gap && !bridges);
+  if (silence || clock_back)
+    result.continuity.arm_follows = reachable(model, last.state, *arm.message, std::max(by_receipt_s, elapsed_s));
+  const bool outlier =
+      !agrees && !gap && bridges && !reachable(model, before.state, *arm.message, elapsed_since(before, arm, lost_s));
+  if (outlier) return;
+  monitor.rate_radps = JointVector::Zero(model.arm.joints);
+  if (elapsed_s > 0.0) monitor.rate_radps = (arm.message->position_rad - last.state.position_rad) / elapsed_s;
+  monitor.before = last;
+  monitor.accepted = {*arm.message, arm.received_s};
 }
 
 /// Takes a new arm state into the monitor; without a new one nothing changes. Returns the time without an arm state
@@ -39,25 +72,19 @@ double update_arm(const Model& model, const Latest<ArmState>& arm, double now_s,
                   MonitorResult& result) {
   if (arm.count == monitor.count) return 0.0;
   const bool first = monitor.count == 0;
-  const double by_receipt_s = arm.received_s - monitor.received_s;
-  const double lost_s = longest_gap_s(model, model.settings.timeouts.arm_state_lost_s);
-  const bool gap = by_receipt_s > lost_s;
-  const double elapsed_s = sent_apart_s(monitor.utime, arm.message->utime, by_receipt_s, lost_s);
-  const bool agrees = first || reachable(model, monitor, *arm.message, elapsed_s);
-  if (first || gap || !agrees) monitor.consistent_since_s = now_s;
-  result.status.arm_inconsistent = !agrees && !gap;
-  result.continuity.arm_follows = first || reachable(model, monitor, *arm.message, std::max(by_receipt_s, elapsed_s));
   // States that came in between were received in time, but not read: then there was no silence.
   const bool next_in_count = !first && arm.count == monitor.count + 1;
-  const double silence_s = next_in_count ? std::min(by_receipt_s, now_s - monitor.cycle_s) : 0.0;
-
+  const double silence_s = next_in_count ? std::min(arm.received_s - monitor.received_s, now_s - monitor.cycle_s) : 0.0;
   if (is_new_driver(model.settings.start_guard_s, arm, monitor)) monitor.driver_started_s = arm.received_s;
-  monitor.rate_radps = JointVector::Zero(model.arm.joints);
-  if (!first && elapsed_s > 0.0) monitor.rate_radps = (arm.message->position_rad - monitor.position_rad) / elapsed_s;
+  if (first) {
+    monitor.consistent_since_s = now_s;
+    monitor.rate_radps = JointVector::Zero(model.arm.joints);
+    monitor.before = monitor.accepted = {*arm.message, arm.received_s};
+  } else {
+    compare_arm(model, arm, now_s, monitor, result);
+  }
   monitor.count = arm.count;
   monitor.received_s = arm.received_s;
-  monitor.utime = arm.message->utime;
-  monitor.position_rad = arm.message->position_rad;
   return silence_s;
 }
 
@@ -67,14 +94,15 @@ void monitor_arm(const Model& model, const Latest<ArmState>& arm, double now_s, 
   const Timeouts& timeouts = model.settings.timeouts;
   const double silence_s = update_arm(model, arm, now_s, monitor, result);
   const auto in_time = [&](double limit_s) {
-    return arm.fresh(now_s, limit_s) && silence_s <= longest_gap_s(model, limit_s);
+    const double age_s = now_s - monitor.accepted.received_s;
+    return age_s >= 0.0 && age_s <= limit_s && silence_s <= longest_gap_s(model, limit_s);
   };
   status.arm_starting = now_s - monitor.driver_started_s < model.settings.start_guard_s;
   status.arm_fresh = in_time(timeouts.arm_state_s);
   status.arm_lost = !in_time(timeouts.arm_state_lost_s);
   if (status.arm_lost) monitor.consistent_since_s = now_s;
   status.arm_consistent = now_s - monitor.consistent_since_s >= timeouts.consistent_s - kRounding_s;
-  result.continuity.arm_received_s = monitor.received_s;
+  result.continuity.arm_received_s = monitor.accepted.received_s;
 }
 
 }  // namespace

@@ -6,13 +6,19 @@
 
 namespace sidestep {
 
+/// An arm state with the time of its receipt.
+struct AcceptedArmState {
+  ArmState state;
+  double received_s = 0.0;
+};
+
 /// What input monitoring stores from one cycle to the next.
 struct ArmMonitor {
-  int64_t count = 0;         ///< number of the newest arm state (Latest::count)
-  int64_t utime = 0;         ///< of the newest arm state
-  double received_s = 0.0;   ///< of the newest arm state
-  JointVector position_rad;  ///< of the newest arm state
-  JointVector rate_radps;           ///< difference quotient of the last two positions
+  int64_t count = 0;                ///< of the newest arm state received, accepted or not
+  double received_s = 0.0;          ///< its receipt
+  AcceptedArmState accepted;        ///< the newest state that is no outlier: the arm of the cycle
+  AcceptedArmState before;          ///< the one accepted before it
+  JointVector rate_radps;           ///< difference quotient of the last two accepted positions
   double driver_started_s = 0.0;    ///< first state of the present arm driver
   double consistent_since_s = 0.0;  ///< since then arm states have been consistent
   int skipped_in_a_row = 0;         ///< skipped cycles; 0 again after a cycle without skipped ones before it
@@ -22,11 +28,11 @@ struct ArmMonitor {
 /// Whether the arm can still be executing the command stream; the input of the command stream (command_stream.h).
 /// An arm driver stops the arm by itself when it receives no command for 50 ms.
 struct ArmContinuity {
-  bool arm_follows = true;          ///< the measured step is possible within the elapsed time
+  bool arm_follows = true;          ///< false: after a silence or a jump of its clock the arm is out of reach
   bool cycles_paused = false;       ///< no cycle for max(50 ms, 1.5 periods): the driver may have stopped the arm
   double arm_waited_until_s = 0.0;  ///< after a pause of the cycles: the time at which the driver began to stop the arm
   bool clock_went_back = false;     ///< this cycle is earlier than the previous one: stored times are not comparable
-  double arm_received_s = 0.0;      ///< receipt of the newest arm state
+  double arm_received_s = 0.0;      ///< receipt of the newest accepted arm state
 };
 
 struct MonitorResult {
@@ -34,9 +40,15 @@ struct MonitorResult {
   ArmContinuity continuity;
 };
 
-/// Compares the ages of the inputs with their timeouts and the arm state with the previous one. Arm states are
+/// Compares the ages of the inputs with their timeouts and the arm state with the ones before. Arm states are
 /// consistent when no gap exceeds timeouts.arm_state_lost_s, their utime advances, and no joint moves farther than its
-/// velocity limit allows in the elapsed time plus one period, plus 1 mrad of sensor noise. `monitor` is updated.
+/// velocity limit allows in the elapsed time plus one period, plus 1 mrad of sensor noise.
+///
+/// A state that is out of reach both from the last accepted state and from the one accepted before it is an outlier. It
+/// counts as a message that was not received: the last accepted state stays the arm of the cycle, and ages. (A wrong
+/// state within reach is accepted; the one before it keeps the next correct state from being the outlier.) Outliers for
+/// longer than timeouts.arm_state_lost_s are a jump of the arm: inconsistent, and the next state is accepted.
+/// `monitor` is updated.
 MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor);
 
 }  // namespace sidestep

@@ -26,7 +26,7 @@ Supervision next_mode(const Supervision& last, const InputStatus& status) {
 
   if (status.stop) return {Mode::kBrake, Fault::kNone, "braking: asked to stop"};
   if (status.foreign_command) return {Mode::kBrake, Fault::kNone, "braking: another controller commands the arm"};
-  if (!status.arm_fresh) return {Mode::kBrake, Fault::kNone, "braking: the arm state is too old"};
+  if (!status.arm_fresh) return {Mode::kBrake, Fault::kNone, "braking: the last consistent arm state is too old"};
   if (!status.obstacles_fresh) return {Mode::kBrake, Fault::kNone, "braking: the obstacles are too old"};
   if (status.late) return {Mode::kBrake, Fault::kNone, "braking: too many cycles in a row were skipped"};
   if (!status.target_known) return {Mode::kHold, Fault::kNone, "holding: no target yet"};

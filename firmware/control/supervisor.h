@@ -7,11 +7,11 @@ namespace sidestep {
 /// What input monitoring finds in one cycle (input_monitor.h); the input of the supervisor.
 struct InputStatus {
   bool arm_known = false;       ///< an arm state was ever accepted
-  bool arm_fresh = false;       ///< not older than timeouts.arm_state_s
-  bool arm_lost = false;        ///< older than timeouts.arm_state_lost_s
+  bool arm_fresh = false;       ///< the accepted arm state is not older than timeouts.arm_state_s
+  bool arm_lost = false;        ///< it is older than timeouts.arm_state_lost_s
   bool arm_consistent = false;  ///< consistent for timeouts.consistent_s without interruption
   bool arm_starting = false;    ///< its driver started less than Settings::start_guard_s ago: must not receive commands
-  bool arm_inconsistent = false;  ///< this cycle's arm state cannot follow the one before
+  bool arm_inconsistent = false;  ///< the arm jumped, or its clock did not advance (input_monitor.h)
   bool obstacles_known = false;   ///< a set was accepted, or none is required
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
@@ -39,7 +39,7 @@ inline bool moves(Mode mode) {
 ///
 ///   from                to     when
 ///   WAIT                HOLD   ready
-///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms or inconsistent; step() also sets FAULT when a
+///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms; arm jumped; step() also sets FAULT when a
 ///                              result is not finite
 ///   FAULT               HOLD   ready
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;

@@ -43,7 +43,8 @@ bool is_at(const LinkPoses& poses, const Target& target) {
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
-  coarse_.settings.obstacle_trust = {};  // a snapshot's obstacles are grown already and contain the static ones
+  coarse_.settings.bridges_outliers = false;  // a lag beyond reach between measured and commanded arm is a jump
+  coarse_.settings.obstacle_trust = {};       // a snapshot's obstacles are grown already and contain the static ones
   coarse_.surroundings.clear();
 }
 
@@ -54,7 +55,8 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
-  arm.utime = state.arm_monitor.utime = 0;  // step() uses only differences of utime
+  // step() uses only differences of utime.
+  arm.utime = state.arm_monitor.accepted.state.utime = state.arm_monitor.before.state.utime = 0;
   Forecast forecast;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {

@@ -48,8 +48,9 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   if (!snapshot.tracking) return;
   snapshot.now_s = now_s;
   snapshot.state = state;
-  snapshot.arm = *inputs.arm.message;
-  snapshot.target = extrapolated(inputs.target, now_s);
+  snapshot.arm = state.arm_monitor.accepted.state;
+  const LinkPoses poses = forward_kinematics(model.arm, snapshot.arm.position_rad);
+  snapshot.target = extrapolated(model.arm, poses, inputs.target, now_s);
 
   NearestSelection nearest(snapshot.nearby, model.settings.foresight.horizon_s);
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);

@@ -17,7 +17,7 @@ struct Snapshot {
   bool tracking = false;   ///< the mode is TRACK; if false, the other fields are not valid
   double now_s = 0.0;      ///< of the cycle, on its clock
   State state;             ///< after the cycle
-  ArmState arm;            ///< as received
+  ArmState arm;            ///< of the cycle
   Target target;           ///< extrapolated to now_s
   NearbyObstacles nearby;  ///< extrapolated to now_s and grown by their uncertainty
 };

@@ -43,8 +43,7 @@ void ClosedLoop::follow(const Result& result) {
     commands.feed(result.command.position_rad, result.command.velocity_radps);
     arm.velocity_radps = result.command.velocity_radps;
   } else {
-    // After a fault for an inconsistent arm state the arm's true state is unknown; then the stream may end in motion.
-    if (was_commanding && result.report.fault != Fault::kArmStateInconsistent) commands.end();
+    if (was_commanding) commands.end();
     arm.velocity_radps.setZero();
   }
   const double period_s = model.settings.period_s();

@@ -39,8 +39,9 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
   cycle.commanded = result.commanding || lockstep_;  // in lockstep every arm state is answered
   cycle.command = result.command;
   if (cycle.commanded) wire_.publish(cycle.command, arguments.utime, arguments.seq);
-  const Latest<ArmState>& arm = arguments.inputs.arm;
-  if (arm.fresh(arguments.now_s, model_.settings.timeouts.arm_state_s)) wire_.publish(*arm.message, arguments.utime);
+  const AcceptedArmState& arm = state_.arm_monitor.accepted;
+  const bool arm_fresh = trigger.now_s - arm.received_s <= model_.settings.timeouts.arm_state_s;
+  if (state_.arm_monitor.count > 0 && arm_fresh) wire_.publish(arm.state, arguments.utime);
 
   cycle.report = result.report;
   cycle.report.limiting |= degraded_ | (blackbox_.failed() ? kLimitingNoBlackbox : kLimitingNothing);

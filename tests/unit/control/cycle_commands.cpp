@@ -1,6 +1,7 @@
 #include <cstring>
 #include <vector>
 
+#include "firmware/model/kinematics.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -213,6 +214,83 @@ void commands_catch_up_with_a_pushed_arm_within_the_joint_limits(void**) {
   }
 }
 
+/// Somebody pushes the arm past a joint's limit. The command stops at the limit within the acceleration limit.
+void commands_that_catch_up_stop_at_a_joint_limit(void**) {
+  for (const char* law : kLaws) {
+    for (const double push_radps : {0.3, 1.0, 1.5, 2.0}) {
+      for (const bool tracks : {false, true}) {
+        for (const double side : {-1.0, 1.0}) {
+          JointVector q_rad = home_rad();
+          q_rad[1] = 1.5 * side;
+          ClosedLoop loop(lwa3_model(law), q_rad);
+          loop.commands.allow_position_correction();
+          loop.target.position_m = forward_kinematics(loop.model.arm, q_rad).tool_position;
+          loop.sends_target = tracks;
+          loop.run(0.8);
+          for (int cycle = 0; cycle < 150; ++cycle) {
+            if (cycle < 70) loop.arm.position_rad[1] += side * push_radps * 0.01;
+            loop.cycle();
+          }
+          check_stream(loop, law, static_cast<unsigned>(10 * push_radps));
+        }
+      }
+    }
+  }
+}
+
+/// All joints are pushed at random, past their limits too, while the arm holds, tracks or brakes.
+void commands_of_a_pushed_arm_are_within_the_limits(void**) {
+  for (const char* law : kLaws) {
+    const Model model = lwa3_model(law);
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      Random random(seed);
+      ClosedLoop loop(model, random.configuration(model.arm, 0.9));
+      loop.commands.allow_position_correction();
+      loop.run(0.6);
+      JointVector push_radps = JointVector::Zero(7);
+      for (int cycle = 0; cycle < 600; ++cycle) {
+        if (random.chance(0.03)) push_radps = random.joints(7, -1.5, 1.5);
+        if (random.chance(0.02)) push_radps.setZero();
+        if (random.chance(0.02)) loop.sends_obstacles = random.chance(0.7);
+        if (random.chance(0.02)) loop.sends_target = random.chance(0.7);
+        loop.arm.position_rad += push_radps * 0.01;
+        loop.cycle();
+      }
+      check_stream(loop, law, seed);
+    }
+  }
+}
+
+/// An arm that is moved toward a limit too fast to stop before it overshoots, and comes back. The rate of the commanded
+/// position never changes faster than the acceleration limit.
+void an_arm_that_cannot_stop_before_a_limit_overshoots_and_comes_back(void**) {
+  for (const char* law : kLaws) {
+    for (const double speed_radps : {0.4, 0.5, 1.0, 2.0}) {
+      ClosedLoop loop(lwa3_model(law), home_rad());
+      const double upper_rad = loop.model.arm.limits.upper_rad[1];
+      loop.arm.position_rad[1] = upper_rad - 0.51 * speed_radps - 0.3 * speed_radps * speed_radps / 20.0;  // in 0.51 s
+      double last_rad = loop.arm.position_rad[1], last_radps = speed_radps, highest_rad = last_rad;
+      for (int cycle = 0; cycle < 300; ++cycle) {
+        if (!loop.last.commanding) {  // moved by hand
+          loop.arm.velocity_radps[1] = speed_radps;
+          loop.arm.position_rad[1] += speed_radps * 0.01;
+          last_rad = loop.arm.position_rad[1];
+        }
+        loop.cycle();
+        if (!loop.last.commanding) continue;
+        const double rate_radps = (loop.last.command.position_rad[1] - last_rad) / 0.01;
+        check(std::abs(rate_radps - last_radps) <= 0.1 + 1e-6, "%s: %g rad/s after %g", law, rate_radps, last_radps);
+        check(std::abs(rate_radps) <= 2.0 + 1e-6, "%s: %g rad/s", law, rate_radps);
+        last_radps = rate_radps;
+        last_rad = loop.last.command.position_rad[1];
+        highest_rad = std::max(highest_rad, last_rad);
+      }
+      check(highest_rad > upper_rad, "%s, %g rad/s: no overshoot", law, speed_radps);
+      check(last_rad < upper_rad + 1e-3 && std::abs(last_radps) < 1e-3, "%s: rests at %g", law, last_rad);
+    }
+  }
+}
+
 /// The smaller of the reported and the differentiated velocity counts.
 void a_measured_velocity_that_the_positions_contradict_is_not_commanded(void**) {
   for (const char* law : kLaws) {
@@ -269,6 +347,9 @@ int main() {
       cmocka_unit_test(commands_stay_near_a_blocked_arm),
       cmocka_unit_test(commands_follow_a_pushed_arm_without_a_jump),
       cmocka_unit_test(commands_catch_up_with_a_pushed_arm_within_the_joint_limits),
+      cmocka_unit_test(commands_that_catch_up_stop_at_a_joint_limit),
+      cmocka_unit_test(commands_of_a_pushed_arm_are_within_the_limits),
+      cmocka_unit_test(an_arm_that_cannot_stop_before_a_limit_overshoots_and_comes_back),
       cmocka_unit_test(a_measured_velocity_that_the_positions_contradict_is_not_commanded),
       cmocka_unit_test(the_same_inputs_give_the_same_commands_bit_for_bit),
   };

@@ -35,7 +35,7 @@ void a_jump_while_waiting_restarts_the_wait(void**) {
   loop.arm.position_rad[2] += 0.2;
   loop.run(0.5);
   assert_true(loop.mode() == Mode::kWait);
-  loop.run(0.02);
+  loop.run(0.1);
   assert_true(loop.mode() == Mode::kHold);
 }
 

@@ -76,28 +76,53 @@ void every_input_times_out_at_its_configured_age(void**) {
 }
 
 /// The largest step is the velocity limit times the elapsed time plus one period, plus 1 mrad.
-void a_joint_step_beyond_the_velocity_limit_is_inconsistent(void**) {
+void a_joint_step_beyond_the_velocity_limit_is_an_outlier(void**) {
   for (int joint = 0; joint < 7; ++joint) {
     for (const double sign : {-1.0, 1.0}) {
       Monitored m;
       const double largest_rad = m.model.arm.limits.velocity_radps[joint] * 2.0 * kPeriod_s + 1e-3;
       m.arm.position_rad[joint] += sign * (largest_rad - 1e-6);
-      assert_false(m.cycle().status.arm_inconsistent);
+      assert_true(m.cycle().status.arm_consistent);
+      const JointVector accepted_rad = m.arm.position_rad;
       m.arm.position_rad[joint] += sign * (largest_rad + 1e-6);
-      const MonitorResult result = m.cycle();
-      assert_true(result.status.arm_inconsistent);
-      assert_false(result.continuity.arm_follows || result.status.arm_consistent);
+      assert_false(m.cycle().status.arm_consistent);
+      check_near(m.monitor.accepted.state.position_rad, accepted_rad, 0);
     }
   }
 }
 
-void an_arm_is_consistent_again_after_half_a_second(void**) {
+/// Within reach of the last state that was accepted before it.
+void the_state_after_a_wrong_one_within_reach_is_no_outlier(void**) {
+  for (const double rate_radps : {0.0, 1.0, 2.0}) {
+    for (const double wrong_rad : {-0.03, -0.01, 0.01, 0.03}) {
+      Monitored m;
+      for (int i = 0; i < 20; ++i) {
+        m.arm.position_rad[1] += rate_radps * kPeriod_s;
+        m.cycle();
+      }
+      for (const double error_rad : {wrong_rad, -wrong_rad, 0.0}) {  // adds up to 0
+        m.arm.position_rad[1] += rate_radps * kPeriod_s + error_rad;
+        m.cycle();
+      }
+      check_near(m.monitor.accepted.state.position_rad, m.arm.position_rad, 0);
+    }
+  }
+}
+
+/// The jump is accepted when the outliers last as long as a lost arm, and reported in that cycle.
+void an_arm_that_jumped_is_consistent_half_a_second_after_it_is_accepted(void**) {
   Monitored m;
+  const Timeouts& timeouts = m.model.settings.timeouts;
   m.arm.position_rad[2] += 1.0;
-  assert_false(m.cycle().status.arm_consistent);
-  int cycles = 0;
-  while (!m.cycle().status.arm_consistent && cycles < 1000) ++cycles;
-  check_near((cycles + 1) * kPeriod_s, m.model.settings.timeouts.consistent_s, 1e-9);
+  int cycles = 0, inconsistent_at = 0;
+  for (bool consistent = false; !consistent && cycles < 1000; ++cycles) {
+    const MonitorResult result = m.cycle();
+    assert_true(result.continuity.arm_follows);
+    consistent = result.status.arm_consistent;
+    if (result.status.arm_inconsistent) inconsistent_at = cycles + 1;
+  }
+  check_near(inconsistent_at * kPeriod_s, timeouts.arm_state_lost_s, 1.01 * kPeriod_s);
+  check_near((cycles - inconsistent_at) * kPeriod_s, timeouts.consistent_s, 1e-9);
 }
 
 void a_utime_that_does_not_advance_is_inconsistent(void**) {
@@ -175,8 +200,9 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(fresh_inputs_are_reported_as_fresh_and_consistent),
       cmocka_unit_test(every_input_times_out_at_its_configured_age),
-      cmocka_unit_test(a_joint_step_beyond_the_velocity_limit_is_inconsistent),
-      cmocka_unit_test(an_arm_is_consistent_again_after_half_a_second),
+      cmocka_unit_test(a_joint_step_beyond_the_velocity_limit_is_an_outlier),
+      cmocka_unit_test(the_state_after_a_wrong_one_within_reach_is_no_outlier),
+      cmocka_unit_test(an_arm_that_jumped_is_consistent_half_a_second_after_it_is_accepted),
       cmocka_unit_test(a_utime_that_does_not_advance_is_inconsistent),
       cmocka_unit_test(three_skipped_cycles_in_a_row_are_late),
       cmocka_unit_test(a_pause_of_the_cycles_longer_than_50_ms_is_reported_with_its_end),

@@ -15,7 +15,7 @@ bool runs(const std::string& code, const std::string& test) {
 
 void every_test_in_the_table_of_faults_is_run(void**) {
   const std::string list = text_of("tests/faults/README.md");
-  const std::regex name("`(unit|faults)/([\\w/]+): (\\w+)` \\|\n");
+  const std::regex name("`(unit|loop|faults)/([\\w/]+): (\\w+)` \\|\n");
   int named = 0;
   for (std::sregex_iterator at(list.begin(), list.end(), name), end; at != end; ++at, ++named) {
     const std::string file = "tests/" + at->str(1) + "/" + at->str(2) + ".cpp";

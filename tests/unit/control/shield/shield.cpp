@@ -385,9 +385,8 @@ State reachable_state(Random& random, const JointVector& measured_rad, double no
       random.joints(7, -2, 2).cwiseMax(sustainable.lower_radps).cwiseMin(sustainable.upper_radps);
   state.stream.rate_radps = state.stream.velocity_radps;
   state.arm_monitor.count = 1;
-  state.arm_monitor.utime = 1;
   state.arm_monitor.received_s = now_s;
-  state.arm_monitor.position_rad = measured_rad;
+  state.arm_monitor.before = state.arm_monitor.accepted = {{1, measured_rad, JointVector::Zero(7)}, now_s};
   state.arm_monitor.cycle_s = now_s - kPeriod_s;
   return state;
 }
