@@ -37,8 +37,4 @@ Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& targe
   return bounded;
 }
 
-Target extrapolated(const Arm& arm, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
-  return extrapolated(bounded_speed(arm, poses, *latest.message), latest.age_s(now_s));
-}
-
 }  // namespace sidestep

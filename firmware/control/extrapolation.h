@@ -23,7 +23,4 @@ Target extrapolated(const Target& target, double dt_s);
 /// larger velocity would only outweigh what the shield trades against it.
 Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
 
-/// The newest target, its velocities bounded as above, extrapolated from its receipt to now_s. There must be one.
-Target extrapolated(const Arm& arm, const LinkPoses& poses, const Latest<Target>& latest, double now_s);
-
 }  // namespace sidestep

@@ -27,10 +27,10 @@ class ObstacleMemory {
   /// counts them in set.remembered. elapsed_s: since the set before. Work is bounded by n log n; nothing is allocated.
   void add_remembered(ObstacleSet& set, double elapsed_s, double now_s);
 
-  /// For a set whose utime is older than that of the newest set: it was delayed, or another sender whose clock is behind
-  /// sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. For an
-  /// obstacle that both sets hold, the late position is compared with the newest one as in a jump, with late_s as the
-  /// elapsed time; after a jump the copy stays at the late position. The input gate passes timeouts.obstacles_s as
+  /// For a set whose utime is older than that of the newest set: it was delayed, or another sender whose clock is
+  /// behind sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. For
+  /// an obstacle that both sets hold, the late position is compared with the newest one as in a jump, with late_s as
+  /// the elapsed time; after a jump the copy stays at the late position. The input gate passes timeouts.obstacles_s as
   /// late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
