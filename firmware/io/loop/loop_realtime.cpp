@@ -131,7 +131,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   ForesightThread foresight_thread(config.model, false);
   const bool locked = lock_memory(why_not);
   warn_unless(locked, "locking memory", why_not, degraded);
-  // LCM starts a thread at the first subscription. It and the receiving thread inherit the priority of this thread.
+  // The receiving thread inherits the priority of this thread.
   const bool fifo = use_fifo(kLoopPriority, why_not);
   warn_unless(fifo, "FIFO scheduling", why_not, degraded);
   use_fifo(kReceivePriority, why_not);
@@ -145,7 +145,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   Loop(runner, *receiver, config.model.settings.period_s()).run(requests.stop);
   end = true;
   receiving.join();
-  return {runner.timing(), receiver->rejected};
+  return {runner.timing(), receiver->rejected, wire.reception()};
 }
 
 }  // namespace sidestep
