@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "firmware/io/lcm/packet.h"
-#include "firmware/model/obstacle.h"
 
 namespace sidestep {
 
@@ -14,7 +13,6 @@ constexpr size_t kFingerprintBytes = 8;
 constexpr size_t kHeaderBytes = kFingerprintBytes + 8;  // fingerprint, utime
 constexpr size_t kCountBytes = 4;
 constexpr size_t kObstacleBytes = 4 + 1 + 16 * 8;  // obstacle_t; a unit test compares it with the generated type
-constexpr size_t kLargestMessageBytes = kHeaderBytes + kCountBytes + kMaxObstacles * kObstacleBytes;  // inbound
 
 inline uint64_t big_endian(const void* bytes, int count) {
   uint64_t value = 0;

@@ -7,7 +7,7 @@
 
 #include "firmware/base/fail.h"
 #include "firmware/io/lcm/link_encoder.h"
-#include "firmware/io/lcm/message_bytes.h"
+#include "firmware/io/lcm/message_decoder.h"
 #include "firmware/io/lcm/sent_messages.h"
 #include "firmware/io/lcm/udp_receiver.h"
 
