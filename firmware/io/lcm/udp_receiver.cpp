@@ -15,7 +15,7 @@
 namespace sidestep {
 namespace {
 
-// Six messages of 4096 obstacles from this machine, each of which takes up to 1.2 MB of twice this size.
+// Eight messages of 4096 obstacles from this machine: each takes 1 MB of twice this size.
 constexpr int kReceiveBufferBytes = 4 << 20;
 
 constexpr size_t kLargestDatagramBytes = 65536;

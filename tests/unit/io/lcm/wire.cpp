@@ -65,8 +65,13 @@ void messages_arrive_whole_and_in_order(void**) {
   peer.send_bytes("NOTHING", Bytes(50, 2));
   peer.send_bytes("TARGET", Bytes(60000, 3));
   peer.send_bytes("LEFT", Bytes(50, 4));
-  peer.send_bytes("OBSTACLES", full_set);
-  noting.drain();
+  // Received piece by piece, for a kernel that grants little.
+  test::DatagramSender sender(private_lcm_url());
+  for (const test::Fragment& fragment : test::fragments(
+           "OBSTACLES", 1, full_set, {60000, 120000, 180000, 240000, 300000, 360000, 420000, 480000, 540000})) {
+    sender.send(fragment.datagram());
+    noting.drain();
+  }
   assert_string_equal(noting.order.c_str(), "atlo");
   assert_true(noting.last == full_set);
 }
