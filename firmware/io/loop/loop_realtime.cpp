@@ -10,6 +10,7 @@
 #include "firmware/io/lcm/network_inputs.h"
 #include "firmware/io/loop/cycle_runner.h"
 #include "firmware/io/loop/loop.h"
+#include "firmware/io/loop/service_watchdog.h"
 
 namespace sidestep {
 namespace {
@@ -33,12 +34,17 @@ class Receiver {
   }
 
   void run(const std::atomic<bool>& end) {
-    while (!end) wire_.receive(20);
+    ServiceWatchdog watchdog;
+    while (!end) {
+      wire_.receive(20);
+      watchdog.report(cycles, monotonic_s());
+    }
   }
 
   TripleBuffer<Received<ArmState>> arm;
   TripleBuffer<Received<Target>> target;
   TripleBuffer<Received<ObstacleSet>> obstacles;
+  std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
   std::atomic<const char*> rejected_reason{""};
@@ -108,6 +114,7 @@ class Loop {
     trigger.rejected_messages = receiver_.rejected;
     trigger.rejected_reason = receiver_.rejected_reason;
     runner_.run(latest, trigger);
+    receiver_.cycles = runner_.timing().cycles;
   }
 
   CycleRunner& runner_;
