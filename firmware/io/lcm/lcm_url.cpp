@@ -16,7 +16,7 @@ constexpr const char* kDefaultGroup = "239.255.76.67:7667";
 /// The text before the first of the separators; removes both from `text`.
 std::string take_up_to(const char* separators, std::string& text) {
   const size_t at = text.find_first_of(separators);
-  const std::string part = text.substr(0, at);
+  std::string part = text.substr(0, at);
   text.erase(0, at == std::string::npos ? at : at + 1);
   return part;
 }
