@@ -66,8 +66,11 @@ int run(const Arguments& arguments) {
                        settings.law == Law::kPaper ? "paper" : "sidestep"));
   const auto loop = arguments.lockstep ? run_lockstep : run_realtime;
   const LoopSummary summary = loop(config, arguments.lcm_url, requests);
-  log_info(fmt::format("{} cycles, {} skipped, {} messages rejected; times in\n{}", summary.timing.cycles,
-                       summary.timing.skipped_cycles, summary.rejected_messages, table(summary.timing)));
+  const Reception& reception = summary.reception;
+  log_info(fmt::format(
+      "{} cycles, {} skipped; {} messages rejected, {} incomplete; {} datagrams lost, {} malformed; times in\n{}",
+      summary.timing.cycles, summary.timing.skipped_cycles, summary.rejected_messages, reception.incomplete_messages,
+      reception.lost_datagrams, reception.malformed_datagrams, table(summary.timing)));
   return 0;
 }
 

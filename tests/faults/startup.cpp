@@ -2,6 +2,7 @@
 
 #include "tests/support/check.h"
 #include "tests/support/lcm_peer.h"
+#include "tests/support/notify_socket.h"
 #include "tests/support/process.h"
 #include "tests/support/scratch.h"
 
@@ -105,6 +106,17 @@ void the_controller_starts_from_urdf_base_and_tip_without_a_config(void**) {
   assert_int_equal(process.wait(kLimit_s), 0);
 }
 
+/// systemd restarts a service that stops reporting.
+void the_running_loop_is_reported_to_the_service_manager(void**) {
+  const test::NotifySocket socket;
+  Process process(controller({"--config", "firmware/config/lwa3.yaml"}));
+  assert_string_equal(socket.next(10000).c_str(), "READY=1\nWATCHDOG=1");
+  for (int i = 0; i < 3; ++i) assert_string_equal(socket.next(3000).c_str(), "WATCHDOG=1");
+  process.signal(SIGSTOP);
+  while (!socket.next(0).empty()) continue;
+  assert_string_equal(socket.next(1500).c_str(), "");
+}
+
 void a_signal_before_the_first_message_ends_the_controller(void**) {
   for (const int signal : {SIGTERM, SIGINT}) {
     for (const char* lockstep : {"", "--lockstep"}) {
@@ -130,6 +142,7 @@ int main() {
       cmocka_unit_test_teardown(help_names_the_options, test::kill_processes),
       cmocka_unit_test_teardown(an_unusable_network_ends_with_code_1_and_a_message, test::kill_processes),
       cmocka_unit_test_teardown(the_controller_starts_from_urdf_base_and_tip_without_a_config, test::kill_processes),
+      cmocka_unit_test_teardown(the_running_loop_is_reported_to_the_service_manager, test::kill_processes),
       cmocka_unit_test_teardown(a_signal_before_the_first_message_ends_the_controller, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -14,6 +14,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  int id() const { return id_; }
   void signal(int number);
 
   /// Exit code, 128 + signal if a signal ended the program, or kStillRunning after limit_s.

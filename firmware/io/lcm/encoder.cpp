@@ -107,6 +107,9 @@ Packet Encoder::encode(const LoopTiming& timing, int64_t utime) {
   message.law = summary(timing.stages[2]);
   message.shield = summary(timing.stages[3]);
   message.gate = summary(timing.stages[4]);
+  message.lost_datagrams = timing.reception.lost_datagrams;
+  message.malformed_datagrams = timing.reception.malformed_datagrams;
+  message.incomplete_messages = timing.reception.incomplete_messages;
   return messages_->buffer.encode(message);
 }
 

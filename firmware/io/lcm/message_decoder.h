@@ -4,8 +4,12 @@
 
 #include "firmware/control/types/messages.h"
 #include "firmware/io/lcm/dialect.h"
+#include "firmware/io/lcm/message_bytes.h"
 
 namespace sidestep {
+
+/// The largest message that can be decoded: a full set of obstacles.
+constexpr size_t kLargestMessageBytes = kHeaderBytes + kCountBytes + kMaxObstacles * kObstacleBytes;
 
 /// Bytes of inbound messages to values. A message is decoded only if its fingerprint is right and its size is exactly
 /// what its count implies. The numbers are not checked (input_gate.h does). Does not throw; does not allocate after the

@@ -26,7 +26,7 @@ class SentMessages {
   }
 
  private:
-  static constexpr unsigned kKept = 1024;  // more than the receive queue holds
+  static constexpr unsigned kKept = 1024;  // what is sent in half a second at the highest rate
   std::array<std::atomic<int64_t>, kKept> utimes_{};
   std::atomic<unsigned> count_{0};
 };

@@ -3,64 +3,102 @@
 #include <fmt/format.h>
 #include <lcm/lcm.h>
 
-#include <deque>
-#include <stdexcept>
+#include <atomic>
 
+#include "firmware/base/fail.h"
+#include "firmware/base/log.h"
+#include "firmware/base/realtime.h"
 #include "firmware/io/lcm/link_encoder.h"
-#include "firmware/io/lcm/message_bytes.h"
+#include "firmware/io/lcm/message_decoder.h"
 #include "firmware/io/lcm/sent_messages.h"
+#include "firmware/io/lcm/udp_receiver.h"
 
 namespace sidestep {
 namespace {
 
-// A full queue refuses the newest message; this one is deep enough for a burst, and receive() drains it.
-constexpr int kQueueMessages = 256;
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's
+constexpr int kSelfTests = 50;
+constexpr double kSelfTest_s = 0.1;
 
-void call_handler(const lcm_recv_buf_t* buffer, const char*, void* handler) {
-  (*static_cast<const PacketHandler*>(handler))({static_cast<const uint8_t*>(buffer->data), buffer->data_size});
+void warn_of_small_buffer(const UdpReceiver& receiver) {
+  if (receiver.granted_buffer_bytes() >= receiver.wanted_buffer_bytes()) return;
+  log_warning(fmt::format(
+      "the kernel grants a receive buffer of {} of {} bytes; sets of many obstacles may be lost (sysctl -w "
+      "net.core.rmem_max={})",
+      receiver.granted_buffer_bytes(), receiver.wanted_buffer_bytes(), receiver.wanted_buffer_bytes()));
 }
 
 }  // namespace
 
 struct Wire::Network {
-  lcm_t* lcm = nullptr;
   Channels channels;
   Neighbours neighbours;
-  std::deque<PacketHandler> handlers;  // a deque keeps their addresses
+  UdpReceiver receiver;
+  FragmentAssembly assembly{kLargestMessageBytes};
+  std::vector<PacketHandler> handlers;  // by the number of the channel
+  std::atomic<int64_t> malformed_datagrams{0}, incomplete_messages{0};
+  lcm_t* lcm = nullptr;
   SentMessages sent_commands;
   Encoder encoder;
   LinkEncoder link_encoder;
 
-  explicit Network(const WireSetup& setup)
+  Network(const std::string& url, const WireSetup& setup)
       : channels(setup.channels),
         neighbours(setup.neighbours),
+        receiver(multicast_group_of(url)),
         encoder(setup.arm, setup.dialect),
-        link_encoder(setup.arm, setup.neighbours.world_from_base) {}
+        link_encoder(setup.arm, setup.neighbours.world_from_base) {
+    lcm = lcm_create(url.c_str());
+    if (!lcm) fail("liblcm cannot send there");
+  }
   ~Network() {
     if (lcm) lcm_destroy(lcm);
   }
 
   void subscribe(const std::string& channel, PacketHandler handler) {
-    PacketHandler& slot = handlers.emplace_back(std::move(handler));
-    // LCM takes the channel as a regular expression; a channel name is to be taken literally.
-    std::string pattern;
-    for (char c : channel)
-      pattern += std::isalnum(static_cast<unsigned char>(c)) ? std::string(1, c) : fmt::format("[{}]", c);
-    lcm_subscription_t* subscription = lcm_subscribe(lcm, pattern.c_str(), call_handler, &slot);
-    if (!subscription) throw std::runtime_error(fmt::format("LCM: cannot subscribe to '{}'", channel));
-    lcm_subscription_set_queue_capacity(subscription, kQueueMessages);
+    assembly.subscribe(channel);
+    handlers.push_back(std::move(handler));
   }
 
   void send(const std::string& channel, const Packet& packet) {
     if (packet.size > 0) lcm_publish(lcm, channel.c_str(), packet.bytes, static_cast<unsigned>(packet.size));
   }
+
+  bool receive(int timeout_ms) {
+    if (!receiver.wait(timeout_ms)) return false;
+    while (const UdpReceiver::Datagram* datagram = receiver.next()) {
+      const auto message = assembly.add(datagram->sender, datagram->bytes);
+      malformed_datagrams = assembly.malformed_datagrams();
+      incomplete_messages = assembly.incomplete_messages();
+      if (!message) continue;
+      handlers[static_cast<size_t>(message->channel)](message->packet);
+      return true;
+    }
+    return false;
+  }
+
+  /// A network that can be joined may still deliver nothing, because of a firewall for example.
+  void test_reception() {
+    subscribe(kSelfTestChannel, [](Packet) {});
+    bool received = false;
+    const double start_s = monotonic_s();
+    for (int i = 1; i <= kSelfTests && !received; ++i) {
+      lcm_publish(lcm, kSelfTestChannel, "sidestep", 8);
+      while (!received && monotonic_s() < start_s + i * kSelfTest_s) received = receive(20);
+    }
+    if (!received) fail("nothing that is sent there comes back (does a firewall drop it?)");
+  }
 };
 
-Wire::Wire(const std::string& url, const WireSetup& setup) : network_(std::make_unique<Network>(setup)) {
-  network_->lcm = lcm_create(url.empty() ? nullptr : url.c_str());
-  if (!network_->lcm)
-    throw std::runtime_error(fmt::format("LCM: cannot use the network '{}' (is there a multicast route?)",
-                                         url.empty() ? "LCM's default" : url));
+Wire::Wire(const std::string& url, const WireSetup& setup) {
+  const std::string used_url = lcm_url_or_default(url);
+  try {
+    network_ = std::make_unique<Network>(used_url, setup);
+    network_->test_reception();
+  } catch (const std::exception& error) {
+    fail("LCM: cannot use the network '{}': {}", used_url, error.what());
+  }
+  warn_of_small_buffer(network_->receiver);
 }
 
 Wire::~Wire() = default;
@@ -88,7 +126,11 @@ void Wire::on_foreign_command(bool lockstep, std::function<void()> handler) {
 }
 
 bool Wire::receive(int timeout_ms) {
-  return lcm_handle_timeout(network_->lcm, timeout_ms) > 0;
+  return network_->receive(timeout_ms);
+}
+
+Reception Wire::reception() const {
+  return {network_->receiver.lost_datagrams(), network_->malformed_datagrams, network_->incomplete_messages};
 }
 
 void Wire::publish(const Command& command, int64_t utime, int64_t seq) {

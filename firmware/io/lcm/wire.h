@@ -6,6 +6,7 @@
 
 #include "firmware/io/lcm/channels.h"
 #include "firmware/io/lcm/encoder.h"
+#include "firmware/io/lcm/loop_timing.h"
 
 namespace sidestep {
 
@@ -21,9 +22,13 @@ struct WireSetup {
 };
 
 /// The LCM network: raw bytes in, commands and reports out.
+///
+/// liblcm only sends. It would receive with a thread that starts at the first subscription, of which liblcm 1.3.1 lets
+/// two datagrams write outside its memory; UdpReceiver and FragmentAssembly receive in its place.
 class Wire {
  public:
-  /// url empty: LCM's default. Throws std::runtime_error when the network cannot be used.
+  /// url empty: LCM's default. Throws std::runtime_error when the network cannot be used, or when nothing that is sent
+  /// there comes back. Warns when the kernel grants a smaller receive buffer than wanted.
   Wire(const std::string& url, const WireSetup& setup);
   ~Wire();
 
@@ -37,8 +42,12 @@ class Wire {
   /// with the same utime: there the second command with the same utime is foreign.
   void on_foreign_command(bool lockstep, std::function<void()> handler);
 
-  /// Handles one message, or waits for one for at most timeout_ms. Returns whether one was handled.
+  /// Handles one message, or waits for one for at most timeout_ms. Returns whether one was handled. Returns early
+  /// after a batch of datagrams without one.
   bool receive(int timeout_ms);
+
+  /// May be called from another thread than receive().
+  Reception reception() const;
 
   /// Each sends without allocating; may be called from another thread than receive().
   void publish(const Command& command, int64_t utime, int64_t seq);

@@ -65,6 +65,7 @@ void CycleRunner::publish_timing(const CycleTrigger& trigger) {
   timing_.wake_latency.add(trigger.wake_latency_s);
   if (trigger.now_s - timing_published_s_ < 1.0) return;
   timing_published_s_ = trigger.now_s;
+  timing_.reception = wire_.reception();
   wire_.publish(timing_, trigger.utime);
 }
 

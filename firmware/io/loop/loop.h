@@ -17,6 +17,7 @@ struct Requests {
 struct LoopSummary {
   LoopTiming timing;
   int64_t rejected_messages = 0;
+  Reception reception;
 };
 
 /// Runs the controller on the monotonic clock, Settings::rate_hz cycles a second, until a stop is requested; then

@@ -37,7 +37,7 @@ class Lockstep {
       if (runner_.timing().cycles != cycles || !stop_) last_cycle_s = monotonic_s();
       if (monotonic_s() - last_cycle_s > kWaitForArm_s) break;
     }
-    return {runner_.timing(), inputs_.rejected()};
+    return {runner_.timing(), inputs_.rejected(), wire_.reception()};
   }
 
  private:

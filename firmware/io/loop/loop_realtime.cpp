@@ -11,6 +11,7 @@
 #include "firmware/io/lcm/network_inputs.h"
 #include "firmware/io/loop/cycle_runner.h"
 #include "firmware/io/loop/loop.h"
+#include "firmware/io/loop/service_watchdog.h"
 
 namespace sidestep {
 namespace {
@@ -34,12 +35,17 @@ class Receiver {
   }
 
   void run(const std::atomic<bool>& end) {
-    while (!end) wire_.receive(20);
+    ServiceWatchdog watchdog;
+    while (!end) {
+      wire_.receive(20);
+      watchdog.report(cycles, monotonic_s());
+    }
   }
 
   TripleBuffer<Received<ArmState>> arm;
   TripleBuffer<Received<Target>> target;
   TripleBuffer<Received<ObstacleSet>> obstacles;
+  std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
   std::atomic<const char*> rejected_reason{""};
@@ -109,6 +115,7 @@ class Loop {
     trigger.rejected_messages = receiver_.rejected;
     trigger.rejected_reason = receiver_.rejected_reason;
     runner_.run(latest, trigger);
+    receiver_.cycles = runner_.timing().cycles;
   }
 
   CycleRunner& runner_;
@@ -132,7 +139,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   ForesightThread foresight_thread(config.model, false);
   const bool locked = lock_memory(why_not);
   warn_unless(locked, "locking memory", why_not, degraded);
-  // LCM starts a thread at the first subscription. It and the receiving thread inherit the priority of this thread.
+  // The receiving thread inherits the priority of this thread.
   const bool fifo = use_fifo(kLoopPriority, why_not);
   warn_unless(fifo, "FIFO scheduling", why_not, degraded);
   use_fifo(kReceivePriority, why_not);
@@ -146,7 +153,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   Loop(runner, *receiver, config.model.settings.period_s()).run(requests.stop);
   end = true;
   receiving.join();
-  return {runner.timing(), receiver->rejected};
+  return {runner.timing(), receiver->rejected, wire.reception()};
 }
 
 }  // namespace sidestep
