@@ -86,6 +86,7 @@ void Blackbox::record(const LatestInputs& latest, const RecordedCycle& cycle) {
 
 /// After a log of a fault the next one waits for Config::blackbox.seconds; it then holds all faults since.
 void Blackbox::run() {
+  use_normal_scheduler();
   for (bool last = false; !last;) {
     last = end_;
     if (!last) sleep_until(monotonic_s() + kPollEvery_s);
