@@ -33,6 +33,7 @@ struct Plan {
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
   double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; up to 1e-4 all hard rows count as met
+  bool failed = false;          ///< a programme had no solution: the arm stops as fast as `range` permits
   Plan plan;
 };
 
@@ -55,7 +56,8 @@ struct ShieldResult {
 /// solution. The second gives the velocity of the coming period: u is the plan, w = 0, only the hard tier, within
 /// `range`, which includes the acceleration limits.
 ///
-/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows. Then
+/// Every programme has a solution because of the slacks. If the solver nevertheless fails, rest takes the place of the
+/// solution (shield_qp.h). A solution with s_hard > 1e-4 m/s violates hard rows. Then
 /// each hard row with a q' + s_hard = b is fixed as a q' >= b - s_hard, without slack, and the programme is solved
 /// again, so that the other hard rows do not profit from this slack. A programme is solved at most 3 times in all.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,

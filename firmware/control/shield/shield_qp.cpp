@@ -103,12 +103,15 @@ struct Problem {
 template <int joint_capacity, int row_capacity>
 QpSolution solve_sized(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
   const Eigen::Index n = objective.nominal_radps.size();
-  QpSolution solution{objective.nominal_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
+  const JointVector rest_radps = 0.0 * objective.nominal_radps;  // remains not finite where the nominal velocity is not
+  QpSolution solution{rest_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
+  solution.failed = true;
   Problem<joint_capacity, row_capacity> problem(rows, range, objective);
   const double constant_cost = -0.5 * problem.gradient.head(n).dot(objective.nominal_radps);
   for (int round = 0; round < kMaxRounds; ++round) {
     typename Problem<joint_capacity, row_capacity>::Unknowns x;
     if (!problem.solve(x)) break;
+    solution.failed = false;
     solution.velocity_radps = x.head(n).cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
     solution.cost = constant_cost + 0.5 * x.dot(problem.hessian * x) + problem.gradient.dot(x);
     const double hard_slack_mps = x[joint_capacity] * kHardSlackScale_mps;
