@@ -64,6 +64,7 @@ int run(const Arguments& arguments) {
   log_info(fmt::format("{} joints, {} link shapes, {:g} Hz{}, law {}", config.model.arm.joints,
                        config.model.arm.shapes.size(), settings.rate_hz, arguments.lockstep ? " in lockstep" : "",
                        settings.law == Law::kPaper ? "paper" : "sidestep"));
+  for (const std::string& warning : config.warnings) log_warning("warning: " + warning);
   const auto loop = arguments.lockstep ? run_lockstep : run_realtime;
   const LoopSummary summary = loop(config, arguments.lcm_url, requests);
   const Reception& reception = summary.reception;

@@ -83,6 +83,11 @@ bool lock_memory(std::string& why_not) {
   return true;
 }
 
+void use_normal_scheduler() {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);  // needs no permission
+}
+
 bool use_fifo(int priority, std::string& why_not) {
   sched_param parameters{};
   parameters.sched_priority = priority;

@@ -42,9 +42,10 @@ double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode 
          std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
 }
 
-/// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion.
+/// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion and the
+/// Limiting bits.
 JointVector apply_shield(const Model& model, const LawInput& input, const VelocityRange& range,
-                         const JointVector& nominal_radps, bool guided, State& state) {
+                         const JointVector& nominal_radps, bool guided, State& state, int& limiting) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   if (!settings.shield.enabled || mode == Mode::kWait) return nominal_radps;
@@ -57,6 +58,7 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
       sustainable_range(model.arm.limits, input.position_rad, input.position_rad, settings.period_s());
   const ShieldResult safe =
       shield(settings.shield, shield_input, sustainable, range, input.tool_jacobian, nominal_radps);
+  if (safe.failed) limiting |= kLimitingShieldFailed;
   state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
   return safe.velocity_radps;
 }
@@ -131,7 +133,8 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   probe.passed(Stage::kLaw);
 
   const VelocityRange range = range_of(model, next, monitored.status, arm);
-  const JointVector safe_radps = apply_shield(model, input, range, nominal.velocity_radps, guide != nullptr, next);
+  const JointVector safe_radps =
+      apply_shield(model, input, range, nominal.velocity_radps, guide != nullptr, next, result.report.limiting);
   probe.passed(Stage::kShield);
 
   if (!safe_radps.allFinite()) latch_not_finite(now_s, next);

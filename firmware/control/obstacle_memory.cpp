@@ -8,6 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kNoise_m = 0.05;     // of a measured position
+constexpr double kShrink_m = 0.01;    // of a half dimension; half the default hard clearance
 constexpr double kRounding_s = 1e-6;  // of times that are whole periods apart
 
 /// Largest displacement of an end of the axis, or of the side of a turned box; swapped ends and opposite sides are the
@@ -20,10 +21,22 @@ double displacement_m(const Obstacle& before, const Obstacle& now) {
   return std::max(std::min(straight_m, crossed_m), std::min((u - v).norm(), (u + v).norm()));
 }
 
+/// Half the length of the axis, m.
+double half_length_m(const Obstacle& obstacle) {
+  return 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm();
+}
+
+/// Whether an obstacle has become smaller in one of its dimensions, or has another shape, which may be smaller.
+bool has_shrunk(const Obstacle& before, const Obstacle& now) {
+  return before.shape != now.shape || half_length_m(before) > half_length_m(now) + kShrink_m ||
+         before.capsule.radius_m > now.capsule.radius_m + kShrink_m ||
+         before.half_width_m.norm() > now.half_width_m.norm() + kShrink_m ||
+         before.half_height_m > now.half_height_m + kShrink_m;
+}
+
 /// The speed of the fastest point of the axis.
 double speed_mps(const Obstacle& obstacle) {
-  const double half_length_m = 0.5 * (obstacle.capsule.end - obstacle.capsule.start).norm();
-  return obstacle.velocity_mps.norm() + obstacle.angular_velocity_radps.norm() * half_length_m;
+  return obstacle.velocity_mps.norm() + obstacle.angular_velocity_radps.norm() * half_length_m(obstacle);
 }
 
 }  // namespace
@@ -46,15 +59,23 @@ bool ObstacleMemory::is_valid(const RememberedObstacle& remembered, double now_s
   return remembered.since_s <= now_s && remembered.since_s + coast_s_ > now_s + kRounding_s;
 }
 
-void ObstacleMemory::remember_jump(RememberedObstacle jumped) {
-  jumped.obstacle.velocity_mps.setZero();
-  jumped.obstacle.angular_velocity_radps.setZero();
-  jumped_[next_jump_] = jumped;
-  next_jump_ = (next_jump_ + 1) % kMaxJumps;
+void ObstacleMemory::remember_change(RememberedObstacle before, const Obstacle& now, double elapsed_s) {
+  const bool jumped = !could_move(before.obstacle, now, elapsed_s);
+  if (!jumped && !has_shrunk(before.obstacle, now)) return;
+  if (jumped) {
+    before.obstacle.velocity_mps.setZero();
+    before.obstacle.angular_velocity_radps.setZero();
+  }
+  remember(before);
+}
+
+void ObstacleMemory::remember(const RememberedObstacle& changed) {
+  changed_[next_change_] = changed;
+  next_change_ = (next_change_ + 1) % kMaxChanges;
 }
 
 /// Merges three lists sorted by id: the previous set, the new set and the vanished obstacles. Obstacles only in the
-/// previous set vanish; obstacles in both may have jumped; vanished ones that are reported again are dropped.
+/// previous set vanish; obstacles in both may have jumped or shrunk; vanished ones that are reported again are dropped.
 void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double now_s) {
   const Vanished& were_vanished = vanished_[current_];
   Vanished& vanished = vanished_[1 - current_];
@@ -72,10 +93,14 @@ void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double no
     if (id_before < id_now) {
       vanished.add({before_[b++], before_s_});
     } else if (id_now < id_before) {
-      if (g < were_vanished.count && were_vanished.obstacles[g].obstacle.id == id_now) ++g;  // reported again
+      if (g < were_vanished.count && were_vanished.obstacles[g].obstacle.id == id_now) {  // reported again
+        if (has_shrunk(were_vanished.obstacles[g].obstacle, set.obstacles[order_[n]]))
+          remember(were_vanished.obstacles[g]);
+        ++g;
+      }
       ++n;
     } else {
-      if (!could_move(before_[b], set.obstacles[order_[n]], elapsed_s)) remember_jump({before_[b], before_s_});
+      remember_change({before_[b], before_s_}, set.obstacles[order_[n]], elapsed_s);
       ++b, ++n;
     }
   }
@@ -97,8 +122,8 @@ void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double 
     while (b < before_count_ && before_[b].id < id) ++b;
     if (b == before_count_ || before_[b].id > id)
       vanished.add(late);
-    else if (!could_move(late.obstacle, before_[b], late_s))
-      remember_jump(late);
+    else
+      remember_change(late, before_[b], late_s);
   }
   while (g < were_vanished.count) vanished.add(were_vanished.obstacles[g++]);
   current_ = 1 - current_;
@@ -119,7 +144,7 @@ void ObstacleMemory::add_remembered(ObstacleSet& set, double elapsed_s, double n
   for (int n = 0; n < before_count_; ++n) before_[n] = set.obstacles[order_[n]];
 
   set.remembered = 0;
-  for (const RememberedObstacle& jumped : jumped_) append(jumped, now_s, set);
+  for (const RememberedObstacle& changed : changed_) append(changed, now_s, set);
   for (int i = 0; i < vanished_[current_].count; ++i) append(vanished_[current_].obstacles[i], now_s, set);
 }
 

@@ -7,11 +7,15 @@
 
 namespace sidestep {
 
-/// An obstacle whose report is doubtful is kept for coast_s after its last good report. There are two cases:
+/// An obstacle whose report is doubtful is kept for coast_s after its last good report. There are three cases:
 ///
 /// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm, which
 ///   covers measurement noise. If it is reported farther away, the report may be wrong. Then a copy stays at the last
-///   position, at rest, besides the reported one. The newest 64 jumps are kept.
+///   position, at rest, besides the reported one.
+/// - A shrink. If a half dimension of an obstacle has become smaller by more than 1 cm, or its shape is another one,
+/// the
+///   sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides the
+///   reported one. The newest 64 jumps and shrinks are kept.
 /// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
 ///   channel alternate with their own obstacles. The obstacle moves on with its last velocity, until it is reported
 ///   again or coast_s is over.
@@ -28,10 +32,10 @@ class ObstacleMemory {
   void add_remembered(ObstacleSet& set, double elapsed_s, double now_s);
 
   /// For a set whose utime is older than that of the newest set: it was delayed, or another sender whose clock is
-  /// behind sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. For
-  /// an obstacle that both sets hold, the late position is compared with the newest one as in a jump, with late_s as
-  /// the elapsed time; after a jump the copy stays at the late position. The input gate passes timeouts.obstacles_s as
-  /// late_s.
+  /// behind sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. An
+  /// obstacle that both sets hold is compared as above, with the late report as the former one and late_s as the
+  /// elapsed time; if the two reports contradict each other, the copy stays as in the late one. The input gate passes
+  /// timeouts.obstacles_s as late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.
@@ -42,7 +46,7 @@ class ObstacleMemory {
     Obstacle obstacle;
     double since_s = -HUGE_VAL;  ///< time of its last report
   };
-  static constexpr int kMaxJumps = 64;
+  static constexpr int kMaxChanges = 64;
 
   /// Obstacles that are no longer reported, sorted by id.
   struct Vanished {
@@ -58,7 +62,8 @@ class ObstacleMemory {
   void sort(const ObstacleSet& set);
   void compare(const ObstacleSet& set, double elapsed_s, double now_s);
   bool could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const;
-  void remember_jump(RememberedObstacle jumped);
+  void remember(const RememberedObstacle& changed);
+  void remember_change(RememberedObstacle before, const Obstacle& now, double elapsed_s);
   void append(const RememberedObstacle& remembered, double now_s, ObstacleSet& set) const;
 
   double speed_bound_mps_, coast_s_;
@@ -66,9 +71,9 @@ class ObstacleMemory {
   int before_count_ = 0;
   double before_s_ = -HUGE_VAL;
   bool any_set_ = false;
-  std::array<int, kMaxObstacles> order_;  ///< indices of the new set, sorted by id
-  std::array<RememberedObstacle, kMaxJumps> jumped_;
-  int next_jump_ = 0;
+  std::array<int, kMaxObstacles> order_;                 ///< indices of the new set, sorted by id
+  std::array<RememberedObstacle, kMaxChanges> changed_;  ///< jumped or shrunk
+  int next_change_ = 0;
   Vanished vanished_[2];  ///< two buffers: the current list and the next one
   int current_ = 0;       ///< index of the current list
 };

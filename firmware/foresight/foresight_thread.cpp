@@ -39,6 +39,7 @@ void ForesightThread::update() {
 }
 
 void ForesightThread::run() {
+  use_normal_scheduler();
   while (!end_) {
     sleep_until(monotonic_s() + kUpdateEvery_s);
     const double now_s = snapshots_.latest().now_s;

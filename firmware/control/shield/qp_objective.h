@@ -18,6 +18,7 @@ struct QpSolution {
   JointVector velocity_radps;   ///< q', n x 1
   double cost = 0.0;            ///< value of the objective
   double hard_slack_mps = 0.0;  ///< s_hard; the largest one where the programme was solved repeatedly
+  bool failed = false;          ///< no solution was found: q' is rest, as far as the range permits
 };
 
 /// Slack scales sigma_t of the hard and the pass tier, m/s. The slack of a tier is sigma_t^2 times the sum of the

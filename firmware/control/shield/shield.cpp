@@ -13,7 +13,7 @@ ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, co
 
   const QpObjective to_plan{plan.velocity_radps, tool_jacobian, 0.0, input.comfort_weight};
   const QpSolution safe = solve(rows.step, range, to_plan);
-  return {safe.velocity_radps, safe.hard_slack_mps, plan};
+  return {safe.velocity_radps, safe.hard_slack_mps, nearest.failed || safe.failed, plan};
 }
 
 }  // namespace sidestep

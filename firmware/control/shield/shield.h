@@ -33,6 +33,7 @@ struct Plan {
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
   double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; up to 1e-4 all hard rows count as met
+  bool failed = false;          ///< a programme had no solution: the arm stops as fast as `range` permits
   Plan plan;
 };
 
@@ -56,10 +57,13 @@ struct ShieldResult {
 /// plan, and solves further programmes for it (evasion.h). The second programme gives the velocity of the coming
 /// period: u is the plan, w = 0, only the hard tier, within `range`, which includes the acceleration limits.
 ///
-/// Every programme has a solution because of the slacks. A solution with s_hard > 1e-4 m/s violates hard rows. All hard
-/// rows share this slack, also those that could be met without it. Therefore the programme is solved again: each hard
-/// row that needs the whole slack (a q' + s_hard = b) becomes a q' >= b - s_hard without slack, and the slack of the
-/// others is minimised anew. A programme is solved at most 3 times in all.
+/// Every programme has a solution because of the slacks. If the solver nevertheless fails, rest takes the place of the
+/// solution (shield_qp.h).
+///
+/// A solution with s_hard > 1e-4 m/s violates hard rows. All hard rows share this slack, also those that could be met
+/// without it. Therefore the programme is solved again: each hard row that needs the whole slack (a q' + s_hard = b)
+/// becomes a q' >= b - s_hard without slack. Then the slack is as small as the other hard rows permit. A programme is
+/// solved at most 3 times in all.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps);
 

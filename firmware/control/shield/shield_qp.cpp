@@ -120,12 +120,15 @@ struct Constraints {
 template <int joint_capacity, int row_capacity>
 QpSolution solve_sized(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
   const Eigen::Index n = objective.nominal_radps.size();
-  QpSolution solution{objective.nominal_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
+  const JointVector rest_radps = 0.0 * objective.nominal_radps;  // remains not finite where the nominal velocity is not
+  QpSolution solution{rest_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps)};
+  solution.failed = true;
   const Objective<joint_capacity> cost(objective);
   Constraints<joint_capacity, row_capacity> constraints(rows, range, objective);
   for (int round = 0; round < kMaxRounds; ++round) {
     Unknowns<joint_capacity> x;
     if (!constraints.solve(cost, x)) break;
+    solution.failed = false;
     solution.velocity_radps = x.head(n).cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
     solution.cost = cost.cost(x);
     const double hard_slack_mps = x[joint_capacity] * kHardSlackScale_mps;

@@ -8,8 +8,9 @@ namespace sidestep {
 /// hard rows. Tries solve_small_active_set() first, then the dual active-set solver of eiquadprog (Goldfarb-Idnani)
 /// with at most 200 iterations. The result is within the range. Hard rows yield last. Comfort rows yield before pass
 /// rows near the target; far from it the default weights make both tiers equally expensive. If eiquadprog fails, the
-/// result is its previous solution of the same programme, or the nominal velocity clipped to the range if there is
-/// none.
+/// result is its previous solution of the same programme. If there is none, it is marked as failed and is the velocity
+/// of the range nearest to rest: the fastest stop that the range permits. A nominal velocity that is not finite gives a
+/// result that is not finite.
 QpSolution solve(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective);
 
 }  // namespace sidestep

@@ -49,6 +49,7 @@ enum Limiting : int32_t {
   kLimitingNotRealtime = 32,
   kLimitingLate = 64,
   kLimitingNoBlackbox = 1024,
+  kLimitingShieldFailed = 2048,
 };
 
 }  // namespace sidestep

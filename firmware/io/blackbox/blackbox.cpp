@@ -1,6 +1,9 @@
 #include "firmware/io/blackbox/blackbox.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kPollEvery_s = 0.02;
-constexpr size_t kMaxLogs = 20;  // in the folder; the oldest are removed
+constexpr size_t kMaxLogs = 10;  // of each reason in the folder; the oldest are removed
 
 constexpr size_t kOtherMessagesBytes = 400;  // arm state and target of 10 joints, with the ring's own words
 constexpr double kUsualObstacles = 64, kUsualSets_hz = 100;
@@ -29,17 +32,38 @@ size_t ring_bytes(const Config& config) {
   return static_cast<size_t>(config.blackbox.seconds * bytes_per_s) + 4 * sizeof(Obstacle) * kMaxObstacles;
 }
 
-bool is_log(const fs::path& file) {
-  return file.filename().string().rfind("blackbox-", 0) == 0 && file.extension() == ".lcmlog";
+/// The folder's files blackbox-*ending; their names sort by time.
+std::vector<fs::path> logs_in(const fs::path& folder, const std::string& ending) {
+  std::vector<fs::path> logs;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    const bool ends = name.size() >= ending.size() && name.substr(name.size() - ending.size()) == ending;
+    if (name.rfind("blackbox-", 0) == 0 && ends) logs.push_back(entry.path());
+  }
+  std::sort(logs.begin(), logs.end());
+  return logs;
 }
 
-/// The names sort by time.
-void remove_oldest(const fs::path& folder) {
-  std::vector<fs::path> logs;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (is_log(entry.path())) logs.push_back(entry.path());
-  std::sort(logs.begin(), logs.end());
+std::string ending_for(const std::string& reason) {
+  return "-" + reason + ".lcmlog";
+}
+
+/// By reason, so that requested logs never remove a log of a fault.
+void remove_oldest(const fs::path& folder, const std::string& reason) {
+  const std::vector<fs::path> logs = logs_in(folder, ending_for(reason));
   for (size_t i = 0; i + kMaxLogs < logs.size(); ++i) fs::remove(logs[i]);
+}
+
+/// Of processes that were killed while they wrote. Another controller that is writing has locked its file
+/// (blackbox_log.cpp).
+void remove_unfinished(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return;
+  for (const fs::path& part : logs_in(folder, ".part")) {
+    const int file = open(part.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) continue;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove(part);
+    close(file);
+  }
 }
 
 }  // namespace
@@ -79,6 +103,12 @@ void Blackbox::record(const LatestInputs& latest, const RecordedCycle& cycle) {
 
 /// After a log of a fault the next one waits for Config::blackbox.seconds; it then holds all faults since.
 void Blackbox::run() {
+  use_normal_scheduler();
+  try {
+    remove_unfinished(config_.blackbox.folder);
+  } catch (const std::exception& error) {
+    log_warning(fmt::format("blackbox: {}", error.what()));
+  }
   for (bool last = false; !last;) {
     last = end_;
     if (!last) sleep_until(monotonic_s() + kPollEvery_s);
@@ -97,7 +127,7 @@ void Blackbox::write(const std::string& reason) {
     fs::create_directories(file.parent_path());
     const int64_t cycles = write_blackbox_log(part, config_, reason, copy_);
     fs::rename(part, file);
-    remove_oldest(file.parent_path());
+    remove_oldest(file.parent_path(), reason);
     log_info(fmt::format("blackbox: {} cycles in {}", cycles, file.string()));
     failed_ = false;
   } catch (const std::exception& error) {

@@ -11,8 +11,8 @@ namespace sidestep {
 /// Config::blackbox.folder after a fault or on request; the loop never waits for it.
 class Blackbox {
  public:
-  /// Allocates all memory. Call it from a thread without real-time priority, since the own thread inherits the
-  /// priority. `requested` requests a log and is reset when the log is written; config and `requested` outlive this.
+  /// Allocates all memory. `requested` requests a log and is reset when the log is written; config and `requested`
+  /// outlive this.
   Blackbox(const Config& config, std::atomic<bool>& requested);
   ~Blackbox();  ///< first writes a requested log
 

@@ -1,6 +1,7 @@
 #include "firmware/io/blackbox/blackbox_log.h"
 
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <array>
 #include <cmath>
@@ -57,6 +58,7 @@ class Log {
         encoder_(config.model.arm, *config.dialect),
         epoch_s_(wall_s() - newest_s) {
     if (!log_.good()) throw std::runtime_error(fmt::format("{}: {}", file, std::strerror(errno)));
+    flock(fileno(log_.getFilePtr()), LOCK_EX | LOCK_NB);  // while it is being written (blackbox.cpp)
   }
 
   void write(const std::string& channel, double at_s, const Packet& packet) {

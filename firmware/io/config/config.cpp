@@ -17,6 +17,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};  // check_limits() decides
 
+// The ranges below hold every value that makes sense for an arm, and none that takes a protection away. They are
+// documented in firmware/config/lwa3.yaml, which a test compares.
+
 void read_limits(YamlSection limits, Arm& arm) {
   limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps, kAnyNumber);
   limits.per_joint("acceleration_radps2", arm.joints, arm.limits.acceleration_radps2, kAnyNumber);
@@ -31,22 +34,22 @@ void read_limits(YamlSection limits, Arm& arm) {
 }
 
 void read_paper(YamlSection paper, PaperGains& gains) {
-  paper.not_negative("k_pos_per_s2", gains.k_pos_per_s2);
-  paper.not_negative("k_vel_per_s", gains.k_vel_per_s);
-  paper.not_negative("k_rpos_m2ps2", gains.k_rpos_m2ps2);
-  paper.not_negative("k_rvel_m2ps2", gains.k_rvel_m2ps2);
-  paper.positive("rho_0_m", gains.rho_0_m);
-  paper.positive("rho_v_m", gains.rho_v_m);
-  paper.positive("rho_min_m", gains.rho_min_m);
-  paper.positive("v_max_mps", gains.v_max_mps);
-  paper.not_negative("lambda_0", gains.lambda_0);
-  paper.positive("sigma_0", gains.sigma_0);
-  paper.positive("lambda_n", gains.lambda_n);
-  paper.not_negative("x_m_mps", gains.x_m_mps);
-  paper.positive("d_m_m", gains.d_m_m);
-  paper.positive("d_1_m", gains.d_1_m);
-  paper.not_negative("d_2_m", gains.d_2_m);
-  paper.not_negative("k_ori_per_s", gains.k_ori_per_s);
+  paper.number("k_pos_per_s2", gains.k_pos_per_s2, {0.0, 1000.0});
+  paper.number("k_vel_per_s", gains.k_vel_per_s, {0.0, 1000.0});
+  paper.number("k_rpos_m2ps2", gains.k_rpos_m2ps2, {0.0, 100.0});
+  paper.number("k_rvel_m2ps2", gains.k_rvel_m2ps2, {0.0, 100.0});
+  paper.number("rho_0_m", gains.rho_0_m, {0.01, 5.0});
+  paper.number("rho_v_m", gains.rho_v_m, {0.01, 5.0});
+  paper.number("rho_min_m", gains.rho_min_m, {0.001, 1.0});
+  paper.number("v_max_mps", gains.v_max_mps, {0.01, 10.0});
+  paper.number("lambda_0", gains.lambda_0, {0.0, 1.0});
+  paper.number("sigma_0", gains.sigma_0, {0.001, 1.0});
+  paper.number("lambda_n", gains.lambda_n, {0.001, 1.0});
+  paper.number("x_m_mps", gains.x_m_mps, {0.0, 10.0});
+  paper.number("d_m_m", gains.d_m_m, {0.01, 5.0});
+  paper.number("d_1_m", gains.d_1_m, {0.01, 5.0});
+  paper.number("d_2_m", gains.d_2_m, {0.0, 5.0});
+  paper.number("k_ori_per_s", gains.k_ori_per_s, {0.0, 50.0});
   std::string tool_velocity = "measured";
   paper.choice("tool_velocity", tool_velocity, {"measured", "planned"});
   gains.tool_velocity = tool_velocity == "planned" ? ToolVelocity::kPlanned : ToolVelocity::kMeasured;
@@ -55,47 +58,48 @@ void read_paper(YamlSection paper, PaperGains& gains) {
 }
 
 void read_sidestep(YamlSection sidestep, SidestepGains& gains) {
-  sidestep.positive("k_pos_per_s", gains.k_pos_per_s);
-  sidestep.positive("k_ori_per_s", gains.k_ori_per_s);
-  sidestep.not_negative("k_posture_per_s", gains.k_posture_per_s);
-  sidestep.positive("k_guide_per_s", gains.k_guide_per_s);
-  sidestep.not_negative("guide_posture_share", gains.guide_posture_share);
-  sidestep.positive("v_max_mps", gains.v_max_mps);
-  sidestep.not_negative("lambda_0", gains.lambda_0);
-  sidestep.positive("sigma_0", gains.sigma_0);
+  sidestep.number("k_pos_per_s", gains.k_pos_per_s, {0.1, 50.0});
+  sidestep.number("k_ori_per_s", gains.k_ori_per_s, {0.1, 50.0});
+  sidestep.number("k_posture_per_s", gains.k_posture_per_s, {0.0, 10.0});
+  sidestep.number("k_guide_per_s", gains.k_guide_per_s, {0.1, 50.0});
+  sidestep.number("guide_posture_share", gains.guide_posture_share, {0.0, 1.0});
+  sidestep.number("v_max_mps", gains.v_max_mps, {0.01, 10.0});
+  sidestep.number("lambda_0", gains.lambda_0, {0.0, 1.0});
+  sidestep.number("sigma_0", gains.sigma_0, {0.001, 1.0});
   sidestep.finish();
 }
 
 void read_shield(YamlSection section, ShieldSettings& shield) {
   section.flag("enabled", shield.enabled);
-  section.not_negative("hard_clearance_m", shield.hard_clearance_m);
-  section.positive("hard_gain_per_s", shield.hard_gain_per_s);
-  section.not_negative("pass_clearance_m", shield.pass_clearance_m);
-  section.positive("pass_gain_per_s", shield.pass_gain_per_s);
-  section.not_negative("pass_reaction_s", shield.pass_reaction_s);
-  section.number("pass_horizon_s", shield.pass_horizon_s, {0.0, 10.0});
-  section.not_negative("comfort_clearance_m", shield.comfort_clearance_m);
-  section.positive("comfort_gain_per_s", shield.comfort_gain_per_s);
-  section.positive("comfort_weight", shield.comfort_weight);
-  section.positive("comfort_least_weight", shield.comfort_least_weight);
-  section.not_negative("comfort_near_m", shield.comfort_near_m);
-  section.positive("comfort_far_m", shield.comfort_far_m);
+  section.number("hard_clearance_m", shield.hard_clearance_m, {0.001, 0.5});
+  section.number("hard_gain_per_s", shield.hard_gain_per_s, {0.1, 100.0});
+  section.number("pass_clearance_m", shield.pass_clearance_m, {0.001, 0.5});
+  section.number("pass_gain_per_s", shield.pass_gain_per_s, {0.1, 100.0});
+  section.number("pass_reaction_s", shield.pass_reaction_s, {0.0, 1.0});
+  section.number("pass_horizon_s", shield.pass_horizon_s, {0.1, 10.0});
+  section.number("comfort_clearance_m", shield.comfort_clearance_m, {0.0, 2.0});
+  section.number("comfort_gain_per_s", shield.comfort_gain_per_s, {0.1, 100.0});
+  section.number("comfort_weight", shield.comfort_weight, {0.001, 1e6});
+  section.number("comfort_least_weight", shield.comfort_least_weight, {0.001, 1e6});
+  section.number("comfort_near_m", shield.comfort_near_m, {0.0, 5.0});
+  section.number("comfort_far_m", shield.comfort_far_m, {0.01, 10.0});
   if (shield.comfort_far_m <= shield.comfort_near_m) section.fail("comfort_far_m", "must be above comfort_near_m");
-  section.not_negative("tool_weight", shield.tool_weight);
-  section.not_negative("self_clearance_m", shield.self_clearance_m);
-  section.positive("range_m", shield.range_m);
+  section.number("tool_weight", shield.tool_weight, {0.0, 10000.0});
+  section.number("self_clearance_m", shield.self_clearance_m, {0.001, 0.5});
+  section.number("range_m", shield.range_m, {0.1, 5.0});
   if (shield.pass_clearance_m <= shield.hard_clearance_m)
     section.fail("pass_clearance_m", "must be above hard_clearance_m");
+  if (shield.range_m <= shield.pass_clearance_m) section.fail("range_m", "must be above pass_clearance_m");
   section.finish();
 }
 
 void read_timeouts(YamlSection section, Timeouts& timeouts) {
   section.renamed("old_place_s", "coast_s");
-  section.positive("target_s", timeouts.target_s);
-  section.positive("obstacles_s", timeouts.obstacles_s);
-  section.positive("arm_state_s", timeouts.arm_state_s);
-  section.positive("arm_state_lost_s", timeouts.arm_state_lost_s);
-  section.not_negative("consistent_s", timeouts.consistent_s);
+  section.number("target_s", timeouts.target_s, {0.01, 5.0});
+  section.number("obstacles_s", timeouts.obstacles_s, {0.01, 1.0});
+  section.number("arm_state_s", timeouts.arm_state_s, {0.005, 0.5});
+  section.number("arm_state_lost_s", timeouts.arm_state_lost_s, {0.005, 1.0});
+  section.number("consistent_s", timeouts.consistent_s, {0.1, 10.0});
   section.number("coast_s", timeouts.coast_s, {0.0, 10.0});
   if (timeouts.arm_state_lost_s < timeouts.arm_state_s)
     section.fail("arm_state_lost_s", "must not be below arm_state_s");
@@ -109,16 +113,16 @@ void read_control(YamlSection control, double rate_override_hz, Settings& settin
   if (rate_override_hz != 0.0) settings.rate_hz = rate_override_hz;
   if (!(settings.rate_hz >= kLowestRate_hz && settings.rate_hz <= kHighestRate_hz))
     control.fail("rate_hz", "must be from 10 to 2000 (also when given by --rate)");
-  control.positive("following_error_rad", settings.following_error_rad);
+  control.number("following_error_rad", settings.following_error_rad, {0.01, 1.0});
   control.finish();
 }
 
 void read_obstacles(YamlSection obstacles, Settings& settings) {
   obstacles.flag("wait_for_first", settings.wait_for_obstacles);
-  obstacles.not_negative("speed_bound_mps", settings.obstacle_speed_bound_mps);
+  obstacles.number("speed_bound_mps", settings.obstacle_speed_bound_mps, {0.1, 20.0});
   obstacles.number("latency_s", settings.obstacle_trust.latency_s, {0.0, 1.0});
-  obstacles.not_negative("uncertainty_m", settings.obstacle_trust.uncertainty_m);
-  obstacles.not_negative("acceleration_bound_mps2", settings.obstacle_trust.acceleration_bound_mps2);
+  obstacles.number("uncertainty_m", settings.obstacle_trust.uncertainty_m, {0.0, 0.5});
+  obstacles.number("acceleration_bound_mps2", settings.obstacle_trust.acceleration_bound_mps2, {0.0, 100.0});
   obstacles.finish();
 }
 
@@ -160,7 +164,7 @@ void read_blackbox(YamlSection section, BlackboxSettings& blackbox) {
 void read_foresight(YamlSection section, ForesightSettings& foresight) {
   section.flag("enabled", foresight.enabled);
   section.number("horizon_s", foresight.horizon_s, {0.5, 20.0});
-  section.not_negative("clearance_m", foresight.clearance_m);
+  section.number("clearance_m", foresight.clearance_m, {0.001, 0.5});
   section.whole("seed", foresight.seed, {0.0, 1e9});
   section.finish();
 }
@@ -197,6 +201,23 @@ Robot read_robot(YamlSection section, const std::string& config_file, const Over
   return robot;
 }
 
+std::vector<std::string> warnings_of(const Settings& settings, const Arm& arm, const JointLimits& of_urdf) {
+  std::vector<std::string> warnings;
+  const auto warn_if = [&](bool is_off, std::string text) {
+    if (is_off) warnings.push_back(std::move(text));
+  };
+  warn_if(!settings.shield.enabled, "shield.enabled is false: the arm avoids nothing");
+  warn_if(!settings.foresight.enabled, "foresight.enabled is false: the arm may get stuck");
+  warn_if(!settings.wait_for_obstacles,
+          "obstacles.wait_for_first is false: the arm moves before it knows any obstacle");
+  warn_if(settings.timeouts.coast_s == 0.0, "timeouts.coast_s is 0: an obstacle that is not reported is forgotten");
+  for (int i = 0; i < arm.joints; ++i)
+    warn_if(arm.limits.lower_rad[i] < of_urdf.lower_rad[i] || arm.limits.upper_rad[i] > of_urdf.upper_rad[i] ||
+                arm.limits.velocity_radps[i] > of_urdf.velocity_radps[i],
+            fmt::format("limits: joint '{}' may go beyond the limits of the URDF", arm.joint_names[i]));
+  return warnings;
+}
+
 }  // namespace
 
 Config load_config(const std::string& file, const Overrides& overrides) {
@@ -214,6 +235,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   const Robot& robot = config.robot;
   config.model.arm = load_arm(robot.urdf, robot.base, robot.tip, robot.meshes);
   read_dialect(root, config);
+  const JointLimits of_urdf = config.model.arm.limits;
   read_limits(root.section("limits"), config.model.arm);
   read_control(root.section("control"), overrides.rate_hz, settings);
   read_paper(root.section("paper"), settings.paper);
@@ -228,6 +250,7 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   read_shield(root.section("shield"), settings.shield);
   read_foresight(root.section("foresight"), settings.foresight);
   config.model.surroundings = read_surroundings(root);
+  config.warnings = warnings_of(settings, config.model.arm, of_urdf);
   use_law(settings, law == "paper" ? Law::kPaper : Law::kSidestep);
   root.finish();
   config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // slow, hence last

@@ -45,6 +45,9 @@ struct Config {
   std::string file;     ///< the YAML file that it was read from; empty without one
   Overrides overrides;  ///< of the command line, included above
 
+  /// One sentence for each value that takes a protection away and may have a reason in an experiment.
+  std::vector<std::string> warnings;
+
   /// What the wire needs of it. The configuration outlives the wire.
   WireSetup wire() const { return {channels, neighbours, *dialect, model.arm}; }
 };

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace sidestep {
 namespace {
 
 constexpr NumberRange kSizeRange_m{1e-4, 100.0};
-constexpr NumberRange kFinite{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
+constexpr NumberRange kTurn_rad{-2.0 * M_PI, 2.0 * M_PI};
 constexpr double kUnitLengthTolerance = 1e-3;
 constexpr int kFirstId = -2;  // -1 is "no obstacle" in the status
 
@@ -39,7 +38,7 @@ Quaternion read_orientation(YamlSection& section) {
 Eigen::Isometry3d read_world_from_base(YamlSection& neighbours) {
   Vector3 position_m = Vector3::Zero(), rpy_rad = Vector3::Zero();
   neighbours.vector("base_position_m", position_m, kPositionRange_m);
-  neighbours.vector("base_rpy_rad", rpy_rad, kFinite);
+  neighbours.vector("base_rpy_rad", rpy_rad, kTurn_rad);
   return Eigen::Translation3d(position_m) * Eigen::AngleAxisd(rpy_rad.z(), Vector3::UnitZ()) *
          Eigen::AngleAxisd(rpy_rad.y(), Vector3::UnitY()) * Eigen::AngleAxisd(rpy_rad.x(), Vector3::UnitX());
 }

@@ -139,14 +139,6 @@ double YamlSection::number(const std::string& key, NumberRange range) {
   return to_number(key, take(key), range);
 }
 
-void YamlSection::positive(const std::string& key, double& value) {
-  number(key, value, {std::numeric_limits<double>::min(), std::numeric_limits<double>::max()});
-}
-
-void YamlSection::not_negative(const std::string& key, double& value) {
-  number(key, value, {0.0, std::numeric_limits<double>::max()});
-}
-
 int YamlSection::whole(const std::string& key, NumberRange range) {
   require(key);
   int value = 0;

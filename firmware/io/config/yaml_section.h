@@ -48,8 +48,6 @@ class YamlSection {
 
   double number(const std::string& key, NumberRange range);
   void number(const std::string& key, double& value, NumberRange range);
-  void positive(const std::string& key, double& value);
-  void not_negative(const std::string& key, double& value);
 
   int whole(const std::string& key, NumberRange range);
   template <typename Whole>

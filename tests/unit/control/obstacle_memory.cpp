@@ -88,6 +88,58 @@ void a_box_jumps_when_it_turns_about_its_longest_edge(void**) {
   check_near(scene.last().half_width_m.cwiseAbs().eval(), standing.half_width_m, 1e-12);
 }
 
+/// The old size moves on with the obstacle, also when the obstacle was not reported in between.
+void an_obstacle_that_shrinks_also_counts_with_its_last_size_for_a_while(void**) {
+  for (const bool vanishes : {false, true}) {
+    Scene scene;
+    Obstacle large = ball(1, Vector3(0, 0, 1));
+    large.velocity_mps = Vector3(0.5, 0, 0);
+    Obstacle small = large;
+    small.capsule.radius_m = 0.001;
+    scene.send({large});
+    if (vanishes) scene.send({});
+    int periods = vanishes ? 1 : 0;
+    while (scene.send({small}) == 1 && ++periods < 1000) {
+      check_near(scene.last().capsule.radius_m, 0.1, 0);
+      check_near(scene.last().capsule.start, Vector3(0.5 * kPeriod_s * periods, 0, 1), 1e-12);
+    }
+    check_near((periods + 1) * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
+  }
+}
+
+/// Every dimension counts; noise of 1 cm and growth do not.
+void a_smaller_dimension_or_another_shape_is_a_shrink(void**) {
+  const Matrix3 upright = Matrix3::Identity();
+  const auto box = [&](double x, double y, double z) { return box_obstacle(Vector3::Zero(), upright, {x, y, z}); };
+  const auto rod = [&](double radius, double length) {
+    return capsule_obstacle(Vector3::Zero(), upright, radius, length);
+  };
+  const auto sphere = [](double radius) { return sphere_obstacle(Vector3::Zero(), radius); };
+  const struct {
+    Obstacle before, now;
+    int remembered;
+  } cases[] = {
+      {sphere(0.08), sphere(0.071), 0},
+      {sphere(0.08), sphere(0.069), 1},
+      {sphere(0.08), sphere(0.5), 0},
+      {rod(0.05, 0.3), rod(0.05, 0.29), 0},
+      {rod(0.05, 0.3), rod(0.05, 0.27), 1},
+      {rod(0.05, 0.3), rod(0.03, 0.3), 1},
+      {box(0.4, 0.3, 0.2), box(0.39, 0.29, 0.19), 0},
+      {box(0.4, 0.3, 0.2), box(0.37, 0.3, 0.2), 1},
+      {box(0.4, 0.3, 0.2), box(0.4, 0.27, 0.2), 1},
+      {box(0.4, 0.3, 0.2), box(0.4, 0.3, 0.17), 1},
+      {box(0.4, 0.3, 0.2), box(0.42, 0.32, 0.22), 0},
+      {rod(0.1, 0.01), sphere(0.1), 1},
+  };
+  for (const auto& each : cases) {
+    Scene scene;
+    scene.send({each.before});
+    assert_int_equal(scene.send({each.now}), each.remembered);
+    if (each.remembered == 1) check_near(scene.last().capsule.radius_m, each.before.capsule.radius_m, 0);
+  }
+}
+
 /// A vanished obstacle may be hidden; its velocity is assumed constant.
 void a_vanished_obstacle_counts_for_a_while_at_its_extrapolated_position(void**) {
   Scene scene;
@@ -197,6 +249,8 @@ int main() {
       cmocka_unit_test(motion_within_the_speed_bound_is_no_jump),
       cmocka_unit_test(a_capsule_jumps_when_an_end_of_its_axis_does),
       cmocka_unit_test(a_box_jumps_when_it_turns_about_its_longest_edge),
+      cmocka_unit_test(an_obstacle_that_shrinks_also_counts_with_its_last_size_for_a_while),
+      cmocka_unit_test(a_smaller_dimension_or_another_shape_is_a_shrink),
       cmocka_unit_test(a_vanished_obstacle_counts_for_a_while_at_its_extrapolated_position),
       cmocka_unit_test(an_obstacle_that_returns_is_not_remembered_and_does_not_jump),
       cmocka_unit_test(the_obstacles_of_two_alternating_senders_all_count),

@@ -422,6 +422,26 @@ void in_any_state_the_arm_can_follow_the_command_of_a_cycle(void**) {
   }
 }
 
+/// With an infinite weight the programme of the plan has no finite objective. (Slow joints: the solution is at a bound of
+/// the range, which leaves the programme to the general solver.)
+void an_arm_whose_shield_fails_comes_to_rest(void**) {
+  test::ClosedLoop loop = test::at_home("sidestep");
+  loop.model.arm.limits.velocity_radps.setConstant(0.2);
+  loop.commands = test::CommandCheck(loop.model.arm.limits, kPeriod_s);
+  loop.sends_target = true;
+  loop.run(1.0);
+  check(loop.speed_radps() > 0.2, "%g rad/s", loop.speed_radps());
+  assert_false(loop.last.report.limiting & kLimitingShieldFailed);
+  loop.model.settings.shield.tool_weight = HUGE_VAL;
+  loop.cycle();
+  assert_true(loop.mode() == Mode::kTrack && (loop.last.report.limiting & kLimitingShieldFailed));
+  loop.run(0.1);
+  check(loop.mode() == Mode::kTrack && (loop.last.report.limiting & kLimitingShieldFailed), "%d",
+        loop.last.report.limiting);
+  check_near(loop.speed_radps(), 0.0, 1e-12);
+  test::check_stream(loop);
+}
+
 }  // namespace
 
 int main() {
@@ -433,6 +453,7 @@ int main() {
       cmocka_unit_test(in_contact_the_distance_only_grows),
       cmocka_unit_test(between_two_obstacles_the_slack_is_the_least_possible),
       cmocka_unit_test(in_any_state_the_arm_can_follow_the_command_of_a_cycle),
+      cmocka_unit_test(an_arm_whose_shield_fails_comes_to_rest),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

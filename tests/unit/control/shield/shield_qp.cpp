@@ -137,6 +137,22 @@ void two_conflicting_rows_do_not_relax_a_third(void**) {
   }
 }
 
+/// A row with an infinite bound has no finite slack.
+void a_programme_without_a_solution_stops_as_fast_as_the_range_permits(void**) {
+  Random random(3);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const int joints = 6 + random.index(5);
+    Programme programme(joints, random);
+    if (programme.rows.is_full()) continue;
+    programme.rows.add({random.joints(joints, -1, 1), HUGE_VAL, random.chance(0.5) ? Tier::kHard : Tier::kPass});
+    const QpSolution solution = programme.solution();
+    const JointVector stop_radps =
+        JointVector::Zero(joints).cwiseMax(programme.range.lower_radps).cwiseMin(programme.range.upper_radps);
+    check(solution.failed, "trial %d: solved", trial);
+    check_near(solution.velocity_radps, stop_radps, 0);
+  }
+}
+
 /// The cycle detects the solution that is not finite and raises a fault.
 void a_nominal_velocity_that_is_not_a_number_gives_no_finite_solution(void**) {
   Random random(2);
@@ -153,6 +169,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_solution_is_feasible_and_no_feasible_step_lowers_its_cost),
       cmocka_unit_test(a_nominal_velocity_that_is_not_a_number_gives_no_finite_solution),
+      cmocka_unit_test(a_programme_without_a_solution_stops_as_fast_as_the_range_permits),
       cmocka_unit_test(two_conflicting_rows_do_not_relax_a_third),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,5 +1,7 @@
 #include "firmware/io/blackbox/blackbox.h"
 
+#include <sys/file.h>
+
 #include <filesystem>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
@@ -211,22 +213,40 @@ void the_largest_messages_fit_into_a_bounded_log(void**) {
   check(fs::file_size(log) < 16u << 20, "%zu bytes", static_cast<size_t>(fs::file_size(log)));
 }
 
-void old_logs_are_removed_and_other_files_kept(void**) {
+/// The newest 10 of each reason are kept.
+void requested_logs_do_not_remove_a_log_of_a_fault(void**) {
   RecordedRun run(1.0);
   run.cycle();
   fs::create_directories(run.config.blackbox.folder);
+  const auto exists = [&](const std::string& name) { return fs::exists(run.config.blackbox.folder + "/" + name); };
+  test::scratch_file("logs/blackbox-20200101-fault.lcmlog", "old");
   for (int i = 0; i < 30; ++i)
-    test::scratch_file("logs/blackbox-2020" + std::to_string(1000 + i) + "-fault.lcmlog", "old");
+    test::scratch_file("logs/blackbox-2020" + std::to_string(1000 + i) + "-request.lcmlog", "old");
   test::scratch_file("logs/notes.txt", "mine");
   run.requested = true;
   run.blackbox.reset();
   size_t logs = 0;
   for (const auto& entry : fs::directory_iterator(run.config.blackbox.folder))
     logs += entry.path().extension() == ".lcmlog";
-  assert_int_equal(logs, 20);
-  assert_true(fs::exists(run.config.blackbox.folder + "/notes.txt"));
-  assert_false(fs::exists(run.config.blackbox.folder + "/blackbox-20201010-fault.lcmlog"));
-  assert_true(fs::exists(run.config.blackbox.folder + "/blackbox-20201011-fault.lcmlog"));
+  assert_int_equal(logs, 11);
+  assert_true(exists("notes.txt") && exists("blackbox-20200101-fault.lcmlog"));
+  assert_false(exists("blackbox-20201020-request.lcmlog"));
+  assert_true(exists("blackbox-20201021-request.lcmlog"));
+}
+
+void an_unfinished_log_of_a_killed_process_is_removed_at_the_start(void**) {
+  RecordedRun run(1.0);
+  run.blackbox.reset();
+  fs::create_directories(run.config.blackbox.folder);
+  const std::string unfinished = test::scratch_file("logs/blackbox-20200101-fault.lcmlog.part", "killed");
+  const std::string other = test::scratch_file("logs/other.part", "mine");
+  const std::string written = test::scratch_file("logs/blackbox-20200102-fault.lcmlog.part", "");
+  lcm::LogFile in_use(written, "w");
+  flock(fileno(in_use.getFilePtr()), LOCK_EX);  // as a controller that writes it
+  run.blackbox = std::make_unique<Blackbox>(run.config, run.requested);
+  run.blackbox.reset();
+  assert_false(fs::exists(unfinished));
+  assert_true(fs::exists(other) && fs::exists(written));
 }
 
 void a_full_disk_is_reported_in_one_line(void**) {
@@ -265,7 +285,8 @@ int main() {
       cmocka_unit_test(a_run_among_jumping_obstacles_replays_bit_for_bit),
       cmocka_unit_test(the_statuses_in_a_log_equal_those_published_with_a_guide),
       cmocka_unit_test(the_largest_messages_fit_into_a_bounded_log),
-      cmocka_unit_test(old_logs_are_removed_and_other_files_kept),
+      cmocka_unit_test(requested_logs_do_not_remove_a_log_of_a_fault),
+      cmocka_unit_test(an_unfinished_log_of_a_killed_process_is_removed_at_the_start),
       cmocka_unit_test(a_full_disk_is_reported_in_one_line),
       cmocka_unit_test(step_arguments_are_restored_from_their_image_but_not_from_a_damaged_one),
   };

@@ -1,4 +1,7 @@
 #include "firmware/io/config/config.h"
+
+#include <regex>
+
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 #include "tests/support/scratch.h"
@@ -102,6 +105,9 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"limits: {acceleration_radps2: 1e300}", "acceleration"},
       {"limits: {acceleration_radps2: -10}", "acceleration"},
       {"limits: {acceleration_radps2: .inf}", "acceleration"},
+      {"limits: {velocity_radps: 31}", "velocity"},
+      {"limits: {acceleration_radps2: 1e9}", "acceleration"},
+      {"shield: {pass_clearance_m: 0.3, range_m: 0.2}", "shield.range_m"},
       {"limits: {lower_rad: 2, upper_rad: 1}", "lower"},
       {"limits: {upper_rad: [6, -2, 6, 2, 6, 2, 6]}", "joint_2"},
       // surroundings
@@ -141,6 +147,56 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
     wrong += report_unless(one_line_with(message, {"config.yaml", bad.culprit}), bad.yaml, message);
   }
   assert_int_equal(wrong, 0);
+}
+
+/// Every number of the reference configuration has a range at the beginning of its comment, or "above 0" for limits.
+void a_number_beyond_the_documented_range_is_refused(void**) {
+  const std::string reference = text_of("firmware/config/lwa3.yaml");
+  const std::regex line("(^|\n)((\\w+):|  (\\w+): ([-.0-9]+) +(# ([.0-9e]+) to ([.0-9e]+))?)");
+  std::string section;
+  int ranges = 0, wrong = 0;
+  for (std::sregex_iterator at(reference.begin(), reference.end(), line), end; at != end; ++at) {
+    if (at->str(3).size() > 0) section = at->str(3);
+    const std::string key = at->str(4);
+    if (key.empty()) continue;
+    check(at->str(6).size() > 0, "%s.%s has no documented range", section.c_str(), key.c_str());
+    const double lowest = std::stod(at->str(7)), highest = std::stod(at->str(8));
+    for (const double beyond : {lowest > 0.0 ? 0.99 * lowest : -1e-6, 1.01 * highest, 1e308}) {
+      const std::string yaml = section + ": {" + key + ": " + std::to_string(beyond) + "}";
+      const std::string message = error_of(kRobot + yaml + "\n");
+      wrong += report_unless(one_line_with(message, {section + "." + key + ": is "}), yaml.c_str(), message);
+    }
+    for (const std::string& bound : {at->str(7), at->str(8)}) {
+      const std::string yaml = section + ": {" + key + ": " + bound + "}";
+      const std::string message = error_of(kRobot + yaml + "\n");  // other keys may contradict
+      wrong += report_unless(message.find(": is ") == std::string::npos, yaml.c_str(), message);
+    }
+    ++ranges;
+  }
+  assert_int_equal(wrong, 0);
+  check(ranges > 50, "only %d ranges", ranges);
+}
+
+/// Values that may have a reason in an experiment.
+void a_protection_that_is_switched_off_is_warned_of(void**) {
+  const struct {
+    const char* yaml;
+    const char* warning;
+  } cases[] = {
+      {"shield: {enabled: false}", "shield.enabled"},
+      {"foresight: {enabled: false}", "foresight.enabled"},
+      {"obstacles: {wait_for_first: false}", "obstacles.wait_for_first"},
+      {"timeouts: {coast_s: 0}", "timeouts.coast_s"},
+      {"limits: {upper_rad: [6, 2, 6, 1, 6, 1, 6]}", "joint_2"},
+      {"limits: {velocity_radps: [2, 2, 2, 2, 2, 2, 3]}", "joint_7"},
+  };
+  for (const auto& each : cases) {
+    const Config config = load_config(scratch_file("config.yaml", std::string(kRobot) + each.yaml), {});
+    assert_int_equal(config.warnings.size(), 1);
+    check(config.warnings[0].find(each.warning) != std::string::npos, "%s", config.warnings[0].c_str());
+  }
+  for (const char* file : {"lwa3", "iiwa14", "iiwa14-drake", "panda", "table", "left"})
+    check(load_config("firmware/config/" + std::string(file) + ".yaml", {}).warnings.empty(), "%s", file);
 }
 
 void a_renamed_key_is_refused_with_its_new_name(void**) {
@@ -255,6 +311,8 @@ void a_scrambled_config_never_crashes(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_bad_config_is_refused_with_one_line_naming_file_and_key),
+      cmocka_unit_test(a_number_beyond_the_documented_range_is_refused),
+      cmocka_unit_test(a_protection_that_is_switched_off_is_warned_of),
       cmocka_unit_test(a_renamed_key_is_refused_with_its_new_name),
       cmocka_unit_test(an_error_is_short_and_holds_no_control_characters),
       cmocka_unit_test(a_bad_robot_is_refused_with_one_line),

@@ -154,6 +154,7 @@ void constants_on_the_wire_equal_those_of_the_firmware(void**) {
   assert_int_equal(Status::LIMITING_SHIELD, sidestep::kLimitingShield);
   assert_int_equal(Status::LIMITING_NOT_REALTIME, sidestep::kLimitingNotRealtime);
   assert_int_equal(Status::LIMITING_LATE, sidestep::kLimitingLate);
+  assert_int_equal(Status::LIMITING_SHIELD_FAILED, sidestep::kLimitingShieldFailed);
   assert_int_equal(sidestep::obstacle_t::SPHERE, 0);
   assert_int_equal(sidestep::obstacle_t::CAPSULE, 1);
   assert_int_equal(sidestep::obstacle_t::BOX, 2);
