@@ -27,8 +27,8 @@ void sleep_until(double instant_s);
 /// sets `why_not`.
 bool lock_memory(std::string& why_not);
 
-/// Puts the calling thread under the normal scheduler. A new thread inherits the scheduler of the thread that starts it,
-/// and a process that of its parent.
+/// Puts the calling thread under the normal scheduler. A new thread inherits the scheduler of the thread that starts
+/// it, and a process that of its parent.
 void use_normal_scheduler();
 
 /// Puts the calling thread under the FIFO scheduler with a priority of 1 (low) to 99. If the system does not permit it:

@@ -48,7 +48,8 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                          const JointVector& nominal_radps, bool guided, State& state, int& limiting) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
-  if (!settings.shield.enabled || mode == Mode::kWait) return nominal_radps;
+  const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
+  if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
   const ShieldInput shield_input{model.arm,           input.poses,
                                  input.position_rad,  state.stream.velocity_radps,
                                  input.clearance,     input.obstacles,

@@ -55,7 +55,7 @@ void compare_arm(const Model& model, const Latest<ArmState>& arm, double now_s, 
   const bool bridges = model.settings.bridges_outliers && !clock_back;
   const bool outliers_persist = gap && !silence && !agrees;
   result.status.arm_inconsistent = outliers_persist || (!agrees && !gap && !bridges);
-  if (silence || clock_back)
+  if (silence || !bridges)
     result.continuity.arm_follows = reachable(model, last.state, *arm.message, std::max(by_receipt_s, elapsed_s));
   const bool outlier =
       !agrees && !gap && bridges && !reachable(model, before.state, *arm.message, elapsed_since(before, arm, lost_s));

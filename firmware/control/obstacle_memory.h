@@ -12,9 +12,8 @@ namespace sidestep {
 /// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm, which
 ///   covers measurement noise. If it is reported farther away, the report may be wrong. Then a copy stays at the last
 ///   position, at rest, besides the reported one.
-/// - A shrink. If a half dimension of an obstacle has become smaller by more than 1 cm, or its shape is another one,
-/// the
-///   sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides the
+/// - A shrink. If half a dimension of an obstacle has become smaller by more than 1 cm, or its shape is another one,
+///   the sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides the
 ///   reported one. The newest 64 jumps and shrinks are kept.
 /// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
 ///   channel alternate with their own obstacles. The obstacle moves on with its last velocity, until it is reported

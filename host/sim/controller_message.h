@@ -14,6 +14,7 @@ enum class Mode { kWait = 0, kHold = 1, kTrack = 2, kBrake = 3, kFault = 4 };
 struct Command {
   int64_t utime = 0;
   Eigen::VectorXd qd_radps;  ///< unchecked: any size, any value
+  Eigen::VectorXd q_rad{};   ///< as many, unchecked as well
 };
 
 /// The fields of controller_status_t that the simulator uses.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace sidestep::sim {
 namespace {
@@ -39,17 +40,29 @@ void Summary::add(const Row& row) {
   last_ = row.status;
 }
 
+/// A controller may have a shorter period than the simulator. Its commands tell the period: joint_velocity leads from
+/// the last joint_position to the new one. Their time stamps do not, because its wake-ups jitter.
+void Summary::measure_period(const Command& command, double since_us) {
+  const double speed2 = command.qd_radps.squaredNorm(), slow_radps = 0.01;
+  const bool has_positions = command.q_rad.size() == command.qd_radps.size();
+  if (!has_positions || previous_.q_rad.size() != command.q_rad.size() || !(speed2 > slow_radps * slow_radps)) return;
+  const double led_us = 1e6 * (command.q_rad - previous_.q_rad).dot(command.qd_radps) / speed2;
+  // After lost commands it is longer; while the position closes a following error it may be anything.
+  const bool is_period = led_us > 0.5 * since_us && led_us < 2.0 * since_us;
+  if (is_period && led_us < 0.9 * command_period_us_) command_period_us_ = led_us;
+}
+
 void Summary::add(const Command& command) {
-  const int64_t since_us = command.utime - previous_.utime;
+  const auto since_us = static_cast<double>(command.utime - previous_.utime);
   // After a pause longer than the watchdog time the plant has stopped.
-  const bool from_rest = previous_.qd_radps.size() != command.qd_radps.size() || since_us > Plant::kWatchdog_us;
+  const bool from_rest =
+      previous_.qd_radps.size() != command.qd_radps.size() || since_us > static_cast<double>(Plant::kWatchdog_us);
   if (from_rest) previous_.qd_radps = Eigen::VectorXd::Zero(command.qd_radps.size());
-  // Whole periods, because the wake-ups of a controller in real time jitter. A controller with a shorter period is
-  // measured by its own time stamps.
-  const int64_t periods = from_rest ? 1 : (since_us + period_us_ / 2) / period_us_;
+  if (!from_rest) measure_period(command, since_us);
+  const double periods = from_rest ? 1.0 : std::max(1.0, std::round(since_us / command_period_us_));
   const double change_radps = (command.qd_radps - previous_.qd_radps).cwiseAbs().maxCoeff();
-  const int64_t time_us = periods > 0 ? periods * period_us_ : since_us > 0 ? since_us : period_us_;
-  joint_acceleration_radps2_ = std::max(joint_acceleration_radps2_, change_radps / (1e-6 * time_us));
+  joint_acceleration_radps2_ =
+      std::max(joint_acceleration_radps2_, change_radps / (1e-6 * periods * command_period_us_));
   previous_ = command;
 }
 

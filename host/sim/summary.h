@@ -10,7 +10,8 @@ namespace sidestep::sim {
 /// The figures of one run.
 class Summary {
  public:
-  explicit Summary(int64_t period_us) : period_us_(period_us) {}
+  /// period_us: of the simulator.
+  explicit Summary(int64_t period_us) : command_period_us_(static_cast<double>(period_us)) {}
 
   void add(const Row& row);
 
@@ -26,7 +27,9 @@ class Summary {
   int rows() const { return rows_; }
 
  private:
-  int64_t period_us_;
+  void measure_period(const Command& command, double since_us);
+
+  double command_period_us_;
   int rows_ = 0;
   double clearance_m_ = kNothingNear;
   std::string nearest_ = "no obstacle";

@@ -117,8 +117,9 @@ bool has_size_of_status(const uint8_t* bytes, int64_t size) {
 std::optional<Command> decode_command(const uint8_t* bytes, int size) {
   joint_command_t message;
   if (!has_size_of_command(bytes, size) || message.decode(bytes, 0, size) != size) return {};
-  Command command{message.utime, Eigen::VectorXd(message.num_joints)};
+  Command command{message.utime, Eigen::VectorXd(message.num_joints), Eigen::VectorXd(message.num_joints)};
   std::copy(message.joint_velocity.begin(), message.joint_velocity.end(), command.qd_radps.data());
+  std::copy(message.joint_position.begin(), message.joint_position.end(), command.q_rad.data());
   return command;
 }
 

@@ -7,6 +7,7 @@
 
 #include "host/sim/summary.h"
 #include "tests/support/check.h"
+#include "tests/support/random.h"
 
 using namespace sidestep::sim;
 using sidestep::test::message_of;
@@ -155,6 +156,26 @@ void acceleration_is_computed_over_whole_periods_of_the_commands(void**) {
   check_near(most({command(1'000'000, 0.1), command(1'200'000, -0.3)}), 30, 1e-9);  // after a pause, from rest
 }
 
+/// Commands of a controller with a period of 1 ms, whose time stamps jitter and of which some are lost.
+void acceleration_of_a_faster_controller_is_computed_over_its_own_periods(void**) {
+  const double period_s = 0.001, acceleration_radps2 = 10.0;
+  sidestep::test::Random random(1);
+  Summary summary(10'000);
+  double q_rad = 1.0, qd_radps = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    qd_radps += (i % 400 < 200 ? 1.0 : -1.0) * acceleration_radps2 * period_s;
+    q_rad += qd_radps * period_s;
+    Command command{1'000'000 + 1000 * i + random.index(300), Eigen::VectorXd::Constant(7, qd_radps)};
+    command.q_rad = Eigen::VectorXd::Constant(7, q_rad);
+    if (i % 50 != 49) summary.add(command);
+  }
+  Expectations expect;
+  expect.joint_acceleration_max_radps2 = acceleration_radps2 * (1.0 + 1e-9);
+  assert_int_equal(summary.broken(expect).size(), 0);
+  expect.joint_acceleration_max_radps2 = acceleration_radps2 * (1.0 - 1e-9);
+  assert_int_equal(summary.broken(expect).size(), 1);
+}
+
 void the_summary_names_the_closest_pair(void**) {
   Summary summary(10'000);
   Scenario scenario;
@@ -177,6 +198,7 @@ int main() {
       cmocka_unit_test(expectations_are_checked_over_the_whole_run),
       cmocka_unit_test(a_result_that_is_not_a_number_breaks_an_expectation),
       cmocka_unit_test(acceleration_is_computed_over_whole_periods_of_the_commands),
+      cmocka_unit_test(acceleration_of_a_faster_controller_is_computed_over_its_own_periods),
       cmocka_unit_test(the_summary_names_the_closest_pair),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -422,8 +422,8 @@ void in_any_state_the_arm_can_follow_the_command_of_a_cycle(void**) {
   }
 }
 
-/// With an infinite weight the programme of the plan has no finite objective. (Slow joints: the solution is at a bound of
-/// the range, which leaves the programme to the general solver.)
+/// With an infinite weight the programme of the plan has no finite objective. (Slow joints: the solution is at a bound
+/// of the range, which leaves the programme to the general solver.)
 void an_arm_whose_shield_fails_comes_to_rest(void**) {
   test::ClosedLoop loop = test::at_home("sidestep");
   loop.model.arm.limits.velocity_radps.setConstant(0.2);
