@@ -6,8 +6,6 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_rad = 1e-9;
-constexpr double kLeastBraking = 0.2;  // share of the acceleration limit; measured with tests/loop/braking: with 0 some
-                                       // stops take too long and touch something, with 0.5 the clearance is smaller
 
 /// The value of smaller magnitude, or 0 where the signs differ.
 double minmod(double a, double b) {
@@ -97,18 +95,10 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
                         stream.velocity_radps, period_s);
 }
 
-VelocityRange braking_range(const Model& model, const VelocityRange& range, const CommandStream& stream) {
-  const JointVector& last_radps = stream.velocity_radps;
-  const JointVector fastest = brake(model.arm.limits, last_radps, model.settings.period_s());
-  const JointVector slowest = brake(model.arm.limits, last_radps, kLeastBraking * model.settings.period_s());
-  const JointVector lower = fastest.cwiseMin(slowest), upper = fastest.cwiseMax(slowest);
-  return {fastest.cwiseMin(lower.cwiseMax(range.lower_radps)), fastest.cwiseMax(upper.cwiseMin(range.upper_radps))};
-}
-
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting) {
   const double period_s = model.settings.period_s();
-  if (velocity_radps.allFinite())
+  if (moves(mode))
     limiting |= apply_limits(model.arm.limits, range, stream.velocity_radps, period_s, velocity_radps);
   else
     velocity_radps = brake(model.arm.limits, stream.velocity_radps, period_s);

@@ -49,13 +49,8 @@ void start_stream(const Model& model, const ArmState& arm, const JointVector& ar
 /// stream catch up; hence the mode.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
-/// The part of next_range() in which the arm can only come to rest: no joint speeds up or reverses, and each slows down
-/// with at least a fifth of its acceleration limit. So the shield can let some joints brake later than others: if every
-/// joint braked as fast as it can, the arm could swing into an obstacle while it stops.
-VelocityRange braking_range(const Model& model, const VelocityRange& range, const CommandStream& stream);
-
-/// The output gate: limits the velocity to the range, brakes if it is not finite, and integrates it to the commanded
-/// position. Stores the command in the stream and sets the Limiting bits of the limits that acted.
+/// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the
+/// commanded position. Stores the command in the stream and sets the Limiting bits of the limits that acted.
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting);
 

@@ -32,9 +32,8 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
 }
 
 /// Weight of the comfort tier, s2/m2. Far from the target a detour costs little, so comfort weighs much; at the target
-/// the tool's task comes first. A guide keeps its own clearance. 0, so that the arm comes to rest, in modes that stop.
+/// the tool's task comes first. A guide keeps its own clearance.
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
-  if (!moves(mode)) return 0.0;
   if (mode != Mode::kTrack || guided) return shield.comfort_least_weight;
   const double distance_m = (input.target.position_m - input.poses.tool_position).norm();
   const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
@@ -42,14 +41,13 @@ double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode 
          std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
 }
 
-/// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion and the
-/// Limiting bits.
+/// The safe joint velocity; the nominal one where the shield is off or the mode does not move. Updates the evasion and
+/// the Limiting bits.
 JointVector apply_shield(const Model& model, const LawInput& input, const VelocityRange& range,
                          const JointVector& nominal_radps, bool guided, State& state, int& limiting) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
-  const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
-  if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
+  if (!settings.shield.enabled || !moves(mode)) return nominal_radps;
   const ShieldInput shield_input{model.arm,           input.poses,
                                  input.position_rad,  state.stream.velocity_radps,
                                  input.clearance,     input.obstacles,
@@ -96,28 +94,11 @@ void report_scene(const LawInput& input, bool has_target, Report& report) {
   if (nearest.obstacle >= 0) report.nearest_obstacle = input.obstacles.at(nearest.obstacle).id;
 }
 
-/// The measured arm; the commanded one while a stream runs and the measured one is too old or contradicts the last one.
-ArmState present_arm(const State& state, const InputStatus& status) {
-  const bool measured = status.arm_fresh && state.supervision.mode != Mode::kFault;
-  if (measured || !state.stream.running) return state.arm_monitor.accepted.state;
-  return {state.arm_monitor.accepted.state.utime, state.stream.position_rad, state.stream.velocity_radps};
-}
-
-/// The range of the coming period. While arm and obstacles are known, BRAKE may evade like HOLD; otherwise the arm only
-/// brakes, and the shield distributes the deceleration among the joints.
-VelocityRange range_of(const Model& model, const State& state, const InputStatus& status, const ArmState& arm) {
-  const Mode mode = state.supervision.mode;
-  const VelocityRange range = next_range(model, mode, state.stream, arm);
-  const bool known = status.arm_fresh && status.obstacles_fresh && model.settings.shield.enabled;
-  if (moves(mode) || (mode == Mode::kBrake && known)) return range;
-  return braking_range(model, range, state.stream);
-}
-
 /// From the accepted arm state to its command. There is one.
 void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& monitored, double now_s, StageProbe& probe,
               Result& result) {
   State& next = result.next;
-  const ArmState arm = present_arm(next, monitored.status);
+  const ArmState& arm = next.arm_monitor.accepted.state;
   const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad);
   probe.passed(Stage::kMonitor);
 
@@ -133,7 +114,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const NominalCommand nominal = evaluate_law(model, input, next, guide, now_s);
   probe.passed(Stage::kLaw);
 
-  const VelocityRange range = range_of(model, next, monitored.status, arm);
+  const VelocityRange range = next_range(model, next.supervision.mode, next.stream, arm);
   const JointVector safe_radps =
       apply_shield(model, input, range, nominal.velocity_radps, guide != nullptr, next, result.report.limiting);
   probe.passed(Stage::kShield);

@@ -103,7 +103,6 @@ class RowMaker {
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     add_hard(row, least, distance_m - settings_.hard_clearance_m, threat_mps);
-    if (input_.comfort_weight == 0.0) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
   }
