@@ -9,8 +9,9 @@
 
 namespace sidestep {
 
-/// The stream of commands to the arm. It starts from the measured arm; then every command continues the last one. It
-/// ends in WAIT, in FAULT once at rest, and when the arm cannot be following it any more.
+/// The stream of commands to the arm. It starts from the position that the drives hold, or from the measured one; then
+/// every command continues the last one. It ends in WAIT, in FAULT once at rest, and when the arm cannot be following
+/// it any more.
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
 /// pushed, the commanded position also moves toward the measured one. Per joint, with the error
@@ -21,8 +22,9 @@ namespace sidestep {
 /// The first line is for an arm that lags a little behind its command, as every arm does. The last line is for an arm
 /// that something has pushed away. The correction that closes this part is the largest speed from which the joint can
 /// brake to rest within the part (stopping_velocity() in model/velocity_range.h). The rate of the commanded position is
-/// the commanded velocity plus the correction. Its change per cycle stays within the acceleration limit. As far as that
-/// permits, the rate stays within the velocity limit and stops before the position limits.
+/// the commanded velocity plus the correction. The correction yields where the sum exceeds a limit: the sum is clipped
+/// to the velocity limit, to the speed from which the joint stops before its position limits, and, with precedence, to
+/// the change that the acceleration limit permits. The commanded velocity itself is not altered.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
@@ -34,8 +36,8 @@ struct CommandStream {
   bool at_rest() const;
 };
 
-/// Ends a stream that the arm can no longer be following: after a pause of the cycles, when the arm is elsewhere after
-/// a silence, or when the driver has just started.
+/// Ends a stream that the arm can no longer be following. There are three reasons: the cycles paused; after a silence
+/// the arm is elsewhere; its driver has just started.
 void check_continuity(const Model& model, const MonitorResult& inputs, CommandStream& stream);
 
 /// The first state of a new stream: the position that the drives hold (else the measured one), and per joint the
@@ -45,8 +47,8 @@ void start_stream(const Model& model, const ArmState& arm, const JointVector& ar
 
 /// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position, with
 /// one more position limit. The velocity does not move the command farther than following_error_rad away from the
-/// measured position. So the command of an arm that is held in place comes to rest. Only in modes that move does the
-/// stream catch up; hence the mode.
+/// measured position, so the command of an arm that is held in place comes to rest. In modes that move, the commanded
+/// position is taken as it will be after the correction of the coming period (see catching up above); hence the mode.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
 /// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the

@@ -64,8 +64,9 @@ struct Result {
 ///   gate                finite, continuous, within the joint limits       command_stream.h
 ///
 /// now_s is on the clock of the inputs' receipt times. Call step() once per Settings::period_s(). While a command
-/// stream runs, every command continues the last one within the joints' velocity, acceleration and position limits. The
-/// probe is called at the end of each stage that runs and does not influence the result.
+/// stream runs, every command continues the last one within the joints' velocity, acceleration and position limits; an
+/// arm that was pushed past a limit returns within the acceleration limit. The probe is called at the end of each stage
+/// that runs and does not influence the result.
 Result step(const Model& model, const State& state, const Inputs& inputs, double now_s, StageProbe* probe = nullptr);
 
 }  // namespace sidestep

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// The newest obstacle set, its age and its growth, together with the surroundings. Reported obstacles grow by their
-/// position uncertainty plus, with a the acceleration bound, v the speed bound and t the age including the latency:
+/// The newest obstacle set, its age and its growth, together with the surroundings. With the acceleration bound a, the
+/// speed bound v and the age t (including the latency), the obstacles of the set grow by the position uncertainty plus
 ///   while the set is fresh   min(1/2 a t^2, v t)
 ///   after its timeout        v t
 /// Surroundings do not grow.

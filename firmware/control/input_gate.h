@@ -12,7 +12,7 @@ enum class InputSource {
   kNetwork,    ///< messages: ordered by their sender's utime, obstacles remembered
   kLockstep,   ///< the same; the receipt time of an arm state is its utime
   kCalls,      ///< function calls of the same process: in the order of the calls, obstacles remembered
-  kRecording,  ///< values that a gate has accepted before, with what it remembered: plausibility only
+  kRecording,  ///< values that a gate has accepted before, remembered obstacles included: plausibility only
 };
 
 /// What the gate decided about a value.

@@ -40,14 +40,15 @@ struct MonitorResult {
   ArmContinuity continuity;
 };
 
-/// Compares the ages of the inputs with their timeouts and the arm state with the ones before. Arm states are
-/// consistent when no gap exceeds timeouts.arm_state_lost_s, their utime advances, and no joint moves farther than its
-/// velocity limit allows in the elapsed time plus one period, plus 1 mrad of sensor noise.
+/// Compares the ages of the inputs with their timeouts and the arm state with the ones before. One arm state is within
+/// reach of another if no joint has moved farther than its velocity limit allows in the elapsed time plus one period,
+/// plus 1 mrad of sensor noise. Arm states are consistent when no gap exceeds timeouts.arm_state_lost_s, their utime
+/// advances, and each is within reach of the one before.
 ///
-/// A state that is out of reach both from the last accepted state and from the one accepted before it is an outlier. It
-/// counts as a message that was not received: the last accepted state stays the arm of the cycle, and ages. (A wrong
-/// state within reach is accepted; the one before it keeps the next correct state from being the outlier.) Outliers for
-/// longer than timeouts.arm_state_lost_s are a jump of the arm: inconsistent, and the next state is accepted.
+/// Outliers: a state that is out of reach of the last two accepted states counts as a message that was not received.
+/// The last accepted state remains the arm of the cycle, and its age grows. (The last two, because a slightly wrong
+/// state may have been accepted; the correct state after it is within reach of the one before.) Outliers for longer
+/// than timeouts.arm_state_lost_s are a jump of the arm: the arm is inconsistent, and the next state is accepted.
 /// `monitor` is updated.
 MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor);
 

@@ -16,7 +16,7 @@ struct InputStatus {
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
   bool target_fresh = false;     ///< not older than timeouts.target_s
-  bool late = false;             ///< 3 or more cycles skipped in a row; 0 again after a cycle without a skipped one
+  bool late = false;             ///< 3 or more cycles in a row were skipped
   bool stop = false;             ///< the process has been asked to end
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };

@@ -22,9 +22,9 @@ struct Snapshot {
   NearbyObstacles nearby;  ///< extrapolated to now_s and grown by their uncertainty
 };
 
-/// Fills `snapshot` from the inputs of a cycle and the state after it. Of more than kMaxNearbyObstacles obstacles those
-/// are kept that come nearest to the base within foresight.horizon_s at constant velocity, measured from their
-/// enclosing balls. Bounded; no allocation.
+/// Fills `snapshot` from the inputs of a cycle and the state after it. If there are more than kMaxNearbyObstacles
+/// obstacles, the snapshot keeps those that come nearest to the base within foresight.horizon_s. For this the obstacles
+/// are taken as their enclosing balls at constant velocity. Bounded; no allocation.
 void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot);
 
 }  // namespace sidestep

@@ -32,7 +32,7 @@ struct Clearance {
 };
 
 /// The obstacles as they are known now: the newest set, its age, and the growth that covers what is uncertain. Indices
-/// >= in_set() are the surroundings of the configuration, which neither move nor grow.
+/// >= in_set() are the surroundings from the configuration file, which neither move nor grow.
 struct ObstacleView {
   const ObstacleSet* set = nullptr;                     ///< null: no set was received
   double age_s = 0.0;                                   ///< of the set at the time of the cycle, since its measurement

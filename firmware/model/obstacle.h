@@ -26,8 +26,9 @@ enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
 struct Obstacle {
   int32_t id = 0;
   Shape shape = Shape::kSphere;
-  Capsule capsule{Vector3::Zero(), Vector3::Zero(), 0.0};  ///< encloses the obstacle; a box along its longest edge
-  Vector3 velocity_mps = Vector3::Zero();                  ///< of the centre
+  Capsule capsule{Vector3::Zero(), Vector3::Zero(),
+                  0.0};  ///< encloses the obstacle; for a box its axis is parallel to the longest edge
+  Vector3 velocity_mps = Vector3::Zero();  ///< of the centre
   Vector3 angular_velocity_radps = Vector3::Zero();
   Vector3 half_width_m = Vector3::Zero();  ///< half the second longest edge of a box, as a vector; other shapes: 0
   double half_height_m = 0.0;              ///< half the shortest edge of a box, which may be 0; other shapes: 0
@@ -53,8 +54,8 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 /// The box of an obstacle of Shape::kBox, without its inflation: edges ordered from the longest to the shortest.
 Box box_of(const Obstacle& obstacle);
 
-/// Distance from the core to the surface, m: the radius of a sphere or capsule; for a box the amount by which
-/// capsule.radius_m was increased since the box was made (0 as reported).
+/// Distance from the core to the surface, m. For a sphere or capsule it is the radius. A reported box has 0. An
+/// obstacle grows by an increase of capsule.radius_m; for a box this is the increase since the box was made.
 double inflation_m(const Obstacle& obstacle);
 
 /// Velocity of the obstacle's material at a point, m/s.

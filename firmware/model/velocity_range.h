@@ -24,8 +24,8 @@ VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lo
 
 /// The largest speed v toward a position limit with which the joint can still stop at the limit: one more period at v,
 /// then braking at the acceleration a, covers the gap, v T + v^2 / (2 a) = gap. gap_rad is the distance to the limit,
-/// positive before it, for the lower limit as for the upper one. For a joint past the limit gap and v are negative: v is
-/// the speed back to it. Infinite for an infinite gap.
+/// positive before it, for the lower limit as for the upper one. A joint past the limit has a negative gap; then v is
+/// negative too, |v| being the speed of its return. Infinite for an infinite gap.
 double stopping_velocity(double gap_rad, double acceleration_radps2, double period_s);
 
 }  // namespace sidestep

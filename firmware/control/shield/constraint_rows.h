@@ -13,8 +13,8 @@ namespace sidestep {
 ///
 /// hard: with r = d - hard_clearance, b is the larger of b1 and b2:
 ///     b1 = k v - hard_gain r            the clearance decays at most exponentially
-///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0. A receding obstacle (v < 0) makes
-///                                       more room, an approaching one is left to b1
+///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0. The speed of an approaching
+///                                       obstacle does not count here, that of a receding one does
 ///   k is the counted share of the obstacle's speed. For a receding obstacle k = 1. For an approaching one k falls
 ///   linearly from 1 to 0 while m rises from hard_clearance to pass_clearance: an obstacle that will pass is no threat.
 ///   v_stop(r) is the largest speed that can be braked within r, one period of travel included, at the deceleration
@@ -35,8 +35,8 @@ struct ConstraintRow {
   JointVector row;  ///< a_i as a column, n x 1, m
   double bound;     ///< b_i, m/s
   Tier tier;
-  /// Only in a two-sided pass row (ClosestApproach::head_on): the bound of -row, which passes the obstacle on its other
-  /// side, m/s. 0 in all other rows.
+  /// A pass row is two-sided if its obstacle can be passed on either side (ClosestApproach::head_on). For the other
+  /// side the row is -row, and this is its bound, m/s. 0: the row is not two-sided.
   double other_bound = 0.0;
 };
 

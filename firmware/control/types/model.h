@@ -14,7 +14,7 @@ struct Model {
   Arm arm;
   Settings settings;
   std::vector<std::pair<int, int>> self_pairs;  ///< pairs of Arm::shapes that must keep clear of each other
-  std::vector<Obstacle> surroundings;           ///< static obstacles of the configuration, base frame
+  std::vector<Obstacle> surroundings;           ///< static obstacles from the configuration file, base frame
 };
 
 }  // namespace sidestep

@@ -26,8 +26,8 @@ class NetworkInputs {
   ~NetworkInputs();
 
   /// Each returns whether the message was accepted. Then `received` holds its value, its bytes and its receipt time;
-  /// otherwise its content is arbitrary. For a set merged from several senders the bytes are empty, and the receipt time
-  /// is that of the oldest part. Received::count is not changed. now_s: local time of receipt.
+  /// otherwise its content is arbitrary. For a set merged from several senders the bytes are empty, and the receipt
+  /// time is that of the oldest part. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);
   /// part 0: the own channel; part k: the k-th neighbour, from 1.

@@ -22,10 +22,10 @@ constexpr double kSelfTest_s = 0.1;
 
 void warn_of_small_buffer(const UdpReceiver& receiver) {
   if (receiver.granted_buffer_bytes() >= receiver.wanted_buffer_bytes()) return;
-  log_warning(fmt::format(
-      "the kernel grants a receive buffer of {} of {} bytes; sets of many obstacles may be lost (sysctl -w "
-      "net.core.rmem_max={})",
-      receiver.granted_buffer_bytes(), receiver.wanted_buffer_bytes(), receiver.wanted_buffer_bytes()));
+  log_warning(
+      fmt::format("the kernel grants a receive buffer of {} of {} bytes; sets of many obstacles may be lost (sysctl -w "
+                  "net.core.rmem_max={})",
+                  receiver.granted_buffer_bytes(), receiver.wanted_buffer_bytes(), receiver.wanted_buffer_bytes()));
 }
 
 }  // namespace
