@@ -22,9 +22,10 @@ namespace sidestep {
 /// The first line is for an arm that lags a little behind its command, as every arm does. The last line is for an arm
 /// that something has pushed away. The correction that closes this part is the largest speed from which the joint can
 /// brake to rest within the part (stopping_velocity() in model/velocity_range.h). The rate of the commanded position is
-/// the commanded velocity plus the correction. The correction yields where the sum exceeds a limit: the sum is clipped
-/// to the velocity limit, to the speed from which the joint stops before its position limits, and, with precedence, to
-/// the change that the acceleration limit permits. The commanded velocity itself is not altered.
+/// the commanded velocity plus the correction. This sum is clipped to the velocity limit and to the speed from which
+/// the joint stops before its position limits; then to the change that the acceleration limit permits, which has
+/// precedence. The commanded velocity itself is not altered. The stream catches up in HOLD and TRACK. In the other
+/// modes the correction is 0; one that is under way ends within the acceleration limit.
 struct CommandStream {
   bool running = false;
   JointVector position_rad;      ///< last commanded
@@ -45,10 +46,10 @@ void check_continuity(const Model& model, const MonitorResult& inputs, CommandSt
 /// smaller; 0 where their signs differ.
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream);
 
-/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position, with
-/// one more position limit. The velocity does not move the command farther than following_error_rad away from the
-/// measured position, so the command of an arm that is held in place comes to rest. In modes that move, the commanded
-/// position is taken as it will be after the correction of the coming period (see catching up above); hence the mode.
+/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. Its
+/// commanded position includes the correction of the coming period, which depends on the mode (see catching up above).
+/// There is one more position limit: the velocity does not move the command farther than following_error_rad away from
+/// the measured position. So the command of an arm that is held in place comes to rest.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
 /// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the

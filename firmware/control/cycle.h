@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// The commanded tool velocity of the last cycle; valid if that was in TRACK. Only the paper's law uses it.
+/// The commanded tool velocity of the last cycle; valid if the last cycle was in TRACK. Only the paper's law uses it.
 struct PlannedVelocity {
   bool valid = false;
   Vector3 velocity_mps = Vector3::Zero();
@@ -34,7 +34,7 @@ struct Report {
   Vector3 tool_position_m = Vector3::Zero();
   Vector3 tool_velocity_mps = Vector3::Zero();
   double target_distance_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN without a target
-  double clearance_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN before the first obstacle set
+  double clearance_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN while no obstacle is known
   int32_t nearest_obstacle = -1;                                        ///< its id
   int nearest_shape = -1;                                               ///< index into Arm::shapes
   double beta = 0.0;

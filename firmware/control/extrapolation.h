@@ -20,7 +20,7 @@ Target extrapolated(const Target& target, double dt_s);
 /// The target with each of its velocities v (linear, angular) scaled down to what the joint velocity limits h permit in
 /// this configuration: |v| <= sum_i |n . J_i| h_i, n = v / |v|, J_i the tool Jacobian's column of joint i. No joint
 /// velocity within the limits moves the tool faster along n, so a target that the arm can follow is not changed. A
-/// larger velocity would only outweigh what the shield trades against it.
+/// larger velocity would only make the shield prefer the target to the clearances.
 Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
 
 }  // namespace sidestep

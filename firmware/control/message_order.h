@@ -16,7 +16,7 @@ class MessageOrder {
   /// assumed
   ///   - when nothing was accepted for restart_s, or
   ///   - after three messages in a row whose utimes increase and are all older than the newest accepted one by more
-  ///     than restart_s. (After one late message, a running sender continues with newer ones.)
+  ///     than restart_s. (Three, because single messages of a running sender may be late.)
   /// now_s: local time of receipt. restart_s: the timeout of the channel.
   bool accept(int64_t utime, double now_s, double restart_s);
 

@@ -32,9 +32,9 @@ class ObstacleMemory {
 
   /// For a set whose utime is older than that of the newest set: it was delayed, or another sender whose clock is
   /// behind sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. An
-  /// obstacle that both sets hold is compared as above, with the late report as the former one and late_s as the
-  /// elapsed time; if the two reports contradict each other, the copy stays as in the late one. The input gate passes
-  /// timeouts.obstacles_s as late_s.
+  /// obstacle that both sets hold is tested for a jump or a shrink from the late set to the newest one, as if late_s
+  /// had elapsed. Then the copy is that of the late report, as above: at rest after a jump, moving on after a shrink.
+  /// The input gate passes timeouts.obstacles_s as late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.

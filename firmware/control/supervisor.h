@@ -16,7 +16,7 @@ struct InputStatus {
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
   bool target_fresh = false;     ///< not older than timeouts.target_s
-  bool late = false;             ///< 3 or more cycles in a row were skipped
+  bool late = false;             ///< 3 or more cycles were skipped since the last cycle on time
   bool stop = false;             ///< the process has been asked to end
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
@@ -39,11 +39,11 @@ inline bool moves(Mode mode) {
 ///
 ///   from                to     when
 ///   WAIT                HOLD   ready
-///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms; arm jumped; step() also sets FAULT when a
-///                              result is not finite
+///   HOLD, TRACK, BRAKE  FAULT  arm state older than 100 ms; the arm jumped; its clock did not advance.
+///                              step() also sets FAULT when a result is not finite
 ///   FAULT               HOLD   ready
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
-///                              3 or more cycles skipped in a row
+///                              3 or more skipped cycles since the last cycle on time
 ///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///

@@ -54,8 +54,8 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 /// The box of an obstacle of Shape::kBox, without its inflation: edges ordered from the longest to the shortest.
 Box box_of(const Obstacle& obstacle);
 
-/// Distance from the core to the surface, m. For a sphere or capsule it is the radius. A reported box has 0. An
-/// obstacle grows by an increase of capsule.radius_m; for a box this is the increase since the box was made.
+/// Distance from the core to the surface, m. For a sphere or capsule it is the radius. A reported box has 0. To let an
+/// obstacle grow, its capsule.radius_m is increased; for a box this is the increase beyond what encloses box_of().
 double inflation_m(const Obstacle& obstacle);
 
 /// Velocity of the obstacle's material at a point, m/s.

@@ -53,8 +53,8 @@ Proximity measure_pair(const Capsule& link, const Capsule& obstacle);
 /// The same for an obstacle of any shape.
 Proximity measure_pair(const Capsule& link, const Obstacle& obstacle);
 
-/// Distance between surfaces, m, as of measure_pair(), if it is below enough_m. Otherwise some value from enough_m to
-/// the distance. For a box that is far away this takes only the distance to its enclosing capsule.
+/// Distance between surfaces, m, as of measure_pair(), if it is below enough_m. Otherwise a lower bound of the
+/// distance that is at least enough_m. For a box that is far away it is the distance to the enclosing capsule.
 double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double enough_m);
 
 /// A bound, m: distance to the core >= distance to the axis of the enclosing capsule - core_reach_m(). 0 for a sphere

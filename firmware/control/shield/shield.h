@@ -33,7 +33,7 @@ struct Plan {
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
   double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; up to 1e-4 all hard rows count as met
-  bool failed = false;          ///< a programme had no solution: the arm stops as fast as `range` permits
+  bool failed = false;          ///< the solver failed in one of the two programmes: rest took the place of its solution
   Plan plan;
 };
 
@@ -61,9 +61,9 @@ struct ShieldResult {
 /// solution (shield_qp.h).
 ///
 /// A solution with s_hard > 1e-4 m/s violates hard rows. All hard rows share this slack, also those that could be met
-/// without it. Therefore the programme is solved again: each hard row that needs the whole slack (a q' + s_hard = b)
-/// becomes a q' >= b - s_hard without slack. Then the slack is as small as the other hard rows permit. A programme is
-/// solved at most 3 times in all.
+/// without it. Therefore the programme is solved again with fixed bounds for the rows that need the whole slack: a row
+/// with a q' + s_hard = b becomes a q' >= b - s_hard. Only the other hard rows still have the slack, which is then as
+/// small as they permit. A programme is solved at most 3 times in all.
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps);
 
