@@ -36,9 +36,9 @@ struct SidestepGains {
   double k_guide_per_s = 4.0;        ///< feedback gain on the deviation from a guide
   double guide_posture_share = 0.5;  ///< largest speed toward the last knot after the guide has ended, in the null
                                      ///< space of the task, as a share of each velocity limit
-  double v_max_mps = 1.0;  ///< largest tool speed toward the target, on top of the target's own velocity
-  double lambda_0 = 0.05;  ///< largest damping near singular postures, paper eq (6)
-  double sigma_0 = 0.05;   ///< damping begins below this singular value
+  double v_max_mps = 1.0;            ///< largest tool speed toward the target, on top of the target's own velocity
+  double lambda_0 = 0.05;            ///< largest damping near singular postures, paper eq (6)
+  double sigma_0 = 0.05;             ///< damping begins below this singular value
 };
 
 /// The shield (shield.h). Distances are from surface to surface.
