@@ -10,8 +10,8 @@
 namespace sidestep {
 
 /// The stream of commands to the arm. It starts from the position that the drives hold, or from the measured one; then
-/// every command continues the last one. It ends in WAIT, in FAULT once at rest, and when the arm cannot be following
-/// it any more.
+/// every command continues the last one. It ends in FAULT once at rest, and when the arm cannot be following it any
+/// more.
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
 /// pushed, the commanded position also moves toward the measured one. Per joint, with the error
@@ -46,8 +46,8 @@ void check_continuity(const Model& model, const MonitorResult& inputs, CommandSt
 /// smaller; 0 where their signs differ.
 void start_stream(const Model& model, const ArmState& arm, const JointVector& arm_rate_radps, CommandStream& stream);
 
-/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. Its
-/// commanded position includes the correction of the coming period, which depends on the mode (see catching up above).
+/// The range of the coming period: velocity_range() for a joint anywhere between commanded and measured position. The
+/// commanded position is taken one correction ahead; the correction depends on the mode (see catching up above).
 /// There is one more position limit: the velocity does not move the command farther than following_error_rad away from
 /// the measured position. So the command of an arm that is held in place comes to rest.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);

@@ -5,8 +5,8 @@
 namespace sidestep {
 
 /// Time between the sending of two messages, s, estimated as min(difference of their utimes, received_apart_s +
-/// slack_s). The network may have delayed one of them by slack_s more than the other. A difference of the utimes beyond
-/// that can only be a jump of the sender's clock. utime: microseconds.
+/// slack_s). The network may have delayed one of them by slack_s more than the other. A larger difference of the utimes
+/// can only be a jump of the sender's clock. utime: microseconds.
 double sent_apart_s(int64_t utime, int64_t later_utime, double received_apart_s, double slack_s);
 
 /// Decides by utime whether a message of one channel is newer than all messages accepted before it.

@@ -12,9 +12,9 @@ namespace sidestep {
 /// - A jump. An obstacle may move by max(speed bound, its speed before, its speed now) * elapsed time + 5 cm, which
 ///   covers measurement noise. If it is reported farther away, the report may be wrong. Then a copy stays at the last
 ///   position, at rest, besides the reported one.
-/// - A shrink. If half a dimension of an obstacle has become smaller by more than 1 cm, or its shape is another one,
-///   the sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides the
-///   reported one. The newest 64 jumps and shrinks are kept.
+/// - A shrink. If a radius or half an edge of an obstacle has become smaller by more than 1 cm, or its shape is another
+///   one, the sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides
+///   the reported one. The newest 64 jumps and shrinks are kept.
 /// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
 ///   channel alternate with their own obstacles. The obstacle moves on with its last velocity, until it is reported
 ///   again or coast_s is over.
@@ -33,8 +33,8 @@ class ObstacleMemory {
   /// For a set whose utime is older than that of the newest set: it was delayed, or another sender whose clock is
   /// behind sent it. An obstacle that only the late set holds is kept as a vanished one, as if last reported now. An
   /// obstacle that both sets hold is tested for a jump or a shrink from the late set to the newest one, as if late_s
-  /// had elapsed. Then the copy is that of the late report, as above: at rest after a jump, moving on after a shrink.
-  /// The input gate passes timeouts.obstacles_s as late_s.
+  /// had elapsed. If the test is positive, a copy of the late report is kept as above: at rest after a jump, moving on
+  /// after a shrink. The input gate passes timeouts.obstacles_s as late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
   /// Time of the last set; `otherwise` before the first one.

@@ -41,7 +41,7 @@ struct ObstacleView {
 
   int in_set() const { return set ? set->count : 0; }
   int count() const { return in_set() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }
-  /// As reported: neither extrapolated nor grown.
+  /// As in the set: neither extrapolated nor grown.
   const Obstacle& at(int index) const {
     if (index < in_set()) return set->obstacles[index];
     return (*surroundings)[index - in_set()];

@@ -22,7 +22,7 @@ enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2 };
 /// (sphere), the segment capsule.start - capsule.end (capsule) or box_of() (box).
 ///
 /// `capsule` encloses the obstacle whatever its shape; cheap tests use it alone. The obstacle's centre is the middle of
-/// the capsule's axis, and the obstacle turns about it. Where capsule.is_sphere(), the obstacle is treated as a sphere.
+/// the capsule's axis, and the obstacle turns about it. A capsule without length is treated as a sphere.
 struct Obstacle {
   int32_t id = 0;
   Shape shape = Shape::kSphere;
@@ -55,7 +55,7 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
 Box box_of(const Obstacle& obstacle);
 
 /// Distance from the core to the surface, m. For a sphere or capsule it is the radius. A reported box has 0. To let an
-/// obstacle grow, its capsule.radius_m is increased; for a box this is the increase beyond what encloses box_of().
+/// obstacle grow, its capsule.radius_m is increased; for a box the result is this increase.
 double inflation_m(const Obstacle& obstacle);
 
 /// Velocity of the obstacle's material at a point, m/s.

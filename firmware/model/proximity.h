@@ -31,7 +31,7 @@ struct ClosestApproach {
 
 /// The Proximity (without its indices) of a link to a point or segment grown by radius_m. points: the nearest points;
 /// gap = points.a - points.b; gap_m = |gap|. Where gap_m <= 1e-9 the normal is some direction perpendicular to the
-/// link, for a sphere z.
+/// link's axis; z if the link is a sphere.
 inline Proximity proximity_of(const Capsule& link, double radius_m, const NearestPoints& points, const Vector3& gap,
                               double gap_m) {
   Proximity pair;

@@ -6,10 +6,10 @@
 
 namespace sidestep {
 
-/// Finds the exact solution of the programme of shield.h in two cases, and returns nothing in all others:
+/// Finds the exact solution of the programme of shield.h, or returns nothing. It can find it only in two cases:
 ///   - at the solution at most three constraint rows are active and no bound of the range is;
 ///   - w = 0, and u clipped to the range meets all rows (with H = I the joints are independent, so clipping is exact).
-/// It also returns nothing with a hard slack above kNegligibleSlack_mps, or if 6 changes of the active set do not find
+/// It returns nothing with a hard slack above kNegligibleSlack_mps, or if 6 changes of the active set do not find
 /// the solution. With H = I + w J^T J and the active rows A, b:
 ///
 ///   stationarity     q' = u + H^-1 A^T lambda                      lambda >= 0, one multiplier per active row

@@ -80,7 +80,8 @@ struct Timeouts {
   double coast_s = 0.3;  ///< how long a jumped, shrunk or vanished obstacle is remembered (obstacle_memory.h)
 };
 
-/// Measurement errors of reported obstacles. Obstacles are extrapolated by the latency; the other two let them grow.
+/// Measurement errors of reported obstacles. The latency adds to the age of an obstacle set, the other two to its
+/// growth (control/extrapolation.h).
 struct ObstacleTrust {
   double latency_s = 0.0;                ///< from the measurement to the receipt; obstacles are extrapolated by it
   double uncertainty_m = 0.0;            ///< of a reported position
