@@ -69,7 +69,7 @@ void declare(CommandLine& app, Options& options) {
       .type_name("FAMILY:SEED");
   app.add_option("--output", options.output, "file for --replay (default: standard output)").type_name("FILE");
   app.add_option("--search", options.search,
-                 "search for scenes in which the arm is touched although it has a way out: rest or track")
+                 "search for scenes in which the arm is touched although a path without contact exists: rest or track")
       .type_name("FAMILY");
   app.add_option("--obstacles", options.obstacles, "obstacles in every scene of --search").show_default().range(1, 5);
   app.add_option("--fastest", options.fastest_mps, "largest speed of the obstacles of --search, m/s")
@@ -182,7 +182,7 @@ int run_search(const Options& options) {
   const SearchResult result = search(space, config.model, plan, options.jobs, options.quiet, interrupted);
   if (!options.csv.empty()) write_findings(options.csv, options.law, result.findings);
   fmt::print("{}", search_report(space, options.law, result));
-  if (!interrupted) return kDone;
+  if (result.runs == runs_of(plan)) return kDone;
   fmt::print(stderr, "campaign: interrupted after {} of {} runs\n", result.runs, runs_of(plan));
   return kInterruptedBySignal;
 }
@@ -193,7 +193,7 @@ int run_scene(const Options& options) {
   const Limits& limits = config.model.arm.limits;
   const auto controller = make_controller(&config.model, lwa3_arm(), limits);
   fmt::print("{}", scene_report(proven.scene, run_search_trial(proven.scene, *controller),
-                                proven_clearance_m(proven.scene, proven.way_out, limits)));
+                                proven_clearance_m(proven.scene, proven.witness, limits)));
   return kDone;
 }
 

@@ -25,7 +25,7 @@ std::string to_yaml(const MovingCapsule& obstacle) {
                      list(obstacle.velocity_mps));
 }
 
-std::string to_yaml(const EvasivePath::Segment& segment) {
+std::string to_yaml(const WitnessPath::Segment& segment) {
   return fmt::format("{{begin_s: {}, duration_s: {}, knot_rad: {}}}", segment.begin_s, segment.duration_s,
                      list(segment.knot_rad));
 }
@@ -46,8 +46,8 @@ MovingCapsule read_obstacle(YamlSection& section) {
   return obstacle;
 }
 
-EvasivePath::Segment read_segment(YamlSection& section) {
-  const EvasivePath::Segment segment{section.number("begin_s", {0.0, 100.0}),
+WitnessPath::Segment read_segment(YamlSection& section) {
+  const WitnessPath::Segment segment{section.number("begin_s", {0.0, 100.0}),
                                      section.number("duration_s", {1e-3, 100.0}),
                                      section.numbers("knot_rad", kJoints, kJoints, kAngle)};
   section.finish();
@@ -56,9 +56,9 @@ EvasivePath::Segment read_segment(YamlSection& section) {
 
 }  // namespace
 
-std::string to_yaml(const SearchScene& scene, const EvasivePath& way_out) {
-  return fmt::format("{{family: {}, start_rad: {}, obstacles: {}, way_out: {}}}", name_of(scene.family),
-                     list(scene.start_rad), to_yaml(scene.obstacles), to_yaml(way_out.segments));
+std::string to_yaml(const SearchScene& scene, const WitnessPath& witness) {
+  return fmt::format("{{family: {}, start_rad: {}, obstacles: {}, witness: {}}}", name_of(scene.family),
+                     list(scene.start_rad), to_yaml(scene.obstacles), to_yaml(witness.segments));
 }
 
 ProvenScene load_proven_scene(const std::string& file) {
@@ -68,19 +68,19 @@ ProvenScene load_proven_scene(const std::string& file) {
                     {}};
   for (YamlSection& obstacle : root.sections("obstacles")) scene.obstacles.push_back(read_obstacle(obstacle));
   if (scene.obstacles.empty()) root.fail("obstacles", "at least one");
-  EvasivePath way_out{scene.start_rad, {}};
-  for (YamlSection& segment : root.sections("way_out")) way_out.segments.push_back(read_segment(segment));
+  WitnessPath witness{scene.start_rad, {}};
+  for (YamlSection& segment : root.sections("witness")) witness.segments.push_back(read_segment(segment));
   root.finish();
-  return {scene, way_out};
+  return {scene, witness};
 }
 
 void write_findings(const std::string& file, const std::string& law, const std::vector<Finding>& findings) {
   std::ofstream stream(file);
-  stream << "family,law,obstacles,chain,run,clearance_m,time_s,way_out_clearance_m,scene\n";
+  stream << "family,law,obstacles,chain,run,clearance_m,time_s,witness_clearance_m,scene\n";
   for (const Finding& finding : findings)
     stream << fmt::format("{},{},{},{},{},{},{},{},\"{}\"\n", name_of(finding.scene.family), law,
                           finding.scene.obstacles.size(), finding.chain, finding.run, finding.closest.clearance_m,
-                          finding.closest.t_s, finding.way_out_clearance_m, to_yaml(finding.scene, finding.way_out));
+                          finding.closest.t_s, finding.witness_clearance_m, to_yaml(finding.scene, finding.witness));
   stream.close();
   if (!stream) throw std::runtime_error(fmt::format("{}: cannot be written", file));
 }

@@ -7,14 +7,14 @@
 
 namespace sidestep::campaign {
 
-/// A scene and a path that proves that there is a way out.
+/// A scene and its witness.
 struct ProvenScene {
   SearchScene scene;
-  EvasivePath way_out;
+  WitnessPath witness;
 };
 
-/// Scene and way out as YAML on one line. Numbers are read back as the same bits.
-std::string to_yaml(const SearchScene& scene, const EvasivePath& way_out);
+/// Scene and witness as YAML on one line. Numbers are read back as the same bits.
+std::string to_yaml(const SearchScene& scene, const WitnessPath& witness);
 
 /// Reads such a line from a file. Throws std::runtime_error, one line that names file and key.
 ProvenScene load_proven_scene(const std::string& file);

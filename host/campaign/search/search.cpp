@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPool = 8;
 constexpr int kMostFailures = 20;  // mutations in a row without less clearance
-constexpr int kWayOutDraws = 20'000;
+constexpr int kWitnessDraws = 20'000;
 
 struct Candidate {
   SearchScene scene;
@@ -67,11 +67,11 @@ class Chain {
 
   void record_contact(const SearchScene& scene, const ClosestApproach& closest) {
     ++result_.contacts;
-    Random random("way out", seed_ * 1'000 + static_cast<uint64_t>(result_.runs));
-    const auto way_out = find_way_out(random, scene, space_.limits, kWayOutDraws);
-    if (!way_out) return;
+    Random random("witness", seed_ * 1'000 + static_cast<uint64_t>(result_.runs));
+    const auto witness = find_witness(random, scene, space_.limits, kWitnessDraws);
+    if (!witness) return;
     result_.findings.push_back(
-        {seed_, result_.runs, scene, closest, *way_out, proven_clearance_m(scene, *way_out, space_.limits)});
+        {seed_, result_.runs, scene, closest, *witness, proven_clearance_m(scene, *witness, space_.limits)});
   }
 
   const SearchSpace& space_;

@@ -7,20 +7,20 @@
 
 #include "firmware/control/types/model.h"
 #include "host/campaign/progress.h"
-#include "host/campaign/search/evasive_path.h"
 #include "host/campaign/search/search_scene_maker.h"
 #include "host/campaign/search/search_trial.h"
+#include "host/campaign/search/witness_path.h"
 
 namespace sidestep::campaign {
 
-/// A scene in which the arm was touched although it had a way out.
+/// A scene in which the arm was touched although a witness, a path that was open to it, is not.
 struct Finding {
   uint64_t chain = 0;  ///< seed of the chain of runs
   int run = 0;         ///< in the chain, from 1
   SearchScene scene;
   ClosestApproach closest;
-  EvasivePath way_out;
-  double way_out_clearance_m = 0.0;
+  WitnessPath witness;
+  double witness_clearance_m = 0.0;
 };
 
 /// The results of one chain or of a whole search.

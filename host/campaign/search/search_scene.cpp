@@ -97,7 +97,7 @@ double self_clearance_m(const ArmPose& pose) {
   return least_m;
 }
 
-bool is_fair(const SearchScene& scene, const Limits& limits, double fastest_mps) {
+bool is_valid(const SearchScene& scene, const Limits& limits, double fastest_mps) {
   if ((scene.start_rad - limits.lower_rad).minCoeff() < 0.0 || (limits.upper_rad - scene.start_rad).minCoeff() < 0.0)
     return false;
   const ArmPose pose = lwa3_arm().pose(scene.start_rad);

@@ -54,9 +54,9 @@ double clearance_m(const SearchScene& scene, const ArmPose& pose, double t_s, do
 /// Least distance between the surfaces of two links of the LWA3 that do not share a joint.
 double self_clearance_m(const ArmPose& pose);
 
-/// Whether the scene is fair: the start is within the limits and free of self-collision, no obstacle is faster than
-/// fastest_mps, nearer than kSeenAt_m at t = 0 or passes the lowest link within kColumnClearance_m, and all have passed
-/// within kLongestSearchScene_s.
-bool is_fair(const SearchScene& scene, const Limits& limits, double fastest_mps);
+/// Whether the scene keeps the rules of the search: the start is within the limits and free of self-collision, no
+/// obstacle is faster than fastest_mps, nearer than kSeenAt_m at t = 0 or passes the lowest link within
+/// kColumnClearance_m, and all have passed within kLongestSearchScene_s.
+bool is_valid(const SearchScene& scene, const Limits& limits, double fastest_mps);
 
 }  // namespace sidestep::campaign

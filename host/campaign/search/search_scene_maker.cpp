@@ -8,7 +8,7 @@ namespace sidestep::campaign {
 namespace {
 
 constexpr int kMostDraws = 100'000;    // of a scene or an obstacle; a scene of five obstacles needs some hundred
-constexpr int kMostMutations = 1'000;  // until one is fair
+constexpr int kMostMutations = 1'000;  // until one is valid
 constexpr double kStartShare = 0.8;    // of the joints' range
 constexpr double kLeastRadius_m = 0.03, kLargestRadius_m = 0.12, kLargestHalfAxis_m = 0.4;
 
@@ -38,13 +38,13 @@ MovingCapsule draw_obstacle(Random& random, const SearchSpace& space, const ArmP
   return obstacle;
 }
 
-/// Adds one obstacle that is fair by itself. Returns false if there is no room for any.
+/// Adds one obstacle that is valid by itself. Returns false if there is no room for any.
 bool add_obstacle(Random& random, const SearchSpace& space, SearchScene& scene) {
   const ArmPose pose = lwa3_arm().pose(scene.start_rad);
   SearchScene alone{scene.family, scene.start_rad, {}};
   for (int draw = 0; draw < 100; ++draw) {
     alone.obstacles = {draw_obstacle(random, space, pose)};
-    if (!is_fair(alone, space.limits, space.fastest_mps)) continue;
+    if (!is_valid(alone, space.limits, space.fastest_mps)) continue;
     scene.obstacles.push_back(alone.obstacles.front());
     return true;
   }
@@ -79,11 +79,11 @@ void mutate(Random& random, double fastest_mps, MovingCapsule& obstacle) {
 SearchScene draw_search_scene(Random& random, const SearchSpace& space) {
   for (int draw = 0; draw < kMostDraws; ++draw) {
     SearchScene scene{space.family, draw_start(random, space.limits), {}};
-    if (!is_fair(scene, space.limits, space.fastest_mps)) continue;
+    if (!is_valid(scene, space.limits, space.fastest_mps)) continue;
     while (static_cast<int>(scene.obstacles.size()) < space.obstacles && add_obstacle(random, space, scene)) continue;
     if (static_cast<int>(scene.obstacles.size()) == space.obstacles) return scene;
   }
-  throw std::runtime_error("no fair scene of the search found");
+  throw std::runtime_error("no valid scene of the search found");
 }
 
 SearchScene mutated(Random& random, const SearchSpace& space, const SearchScene& scene) {
@@ -93,7 +93,7 @@ SearchScene mutated(Random& random, const SearchSpace& space, const SearchScene&
       if (random.uniform(0.0, 1.0) < 0.7) mutate(random, space.fastest_mps, obstacle);
     if (random.uniform(0.0, 1.0) < 0.5)
       for (double& q_rad : changed.start_rad) q_rad = jittered(random, q_rad, 0.1);
-    if (is_fair(changed, space.limits, space.fastest_mps)) return changed;
+    if (is_valid(changed, space.limits, space.fastest_mps)) return changed;
   }
   return scene;
 }

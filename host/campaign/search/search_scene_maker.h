@@ -13,11 +13,11 @@ struct SearchSpace {
   Limits limits;       ///< of the joints
 };
 
-/// A random fair scene. The centre of every obstacle crosses the axis of a moving link of the arm at its start. Throws
+/// A random valid scene. The centre of every obstacle crosses the axis of a moving link of the arm at its start. Throws
 /// std::runtime_error if none is found.
 SearchScene draw_search_scene(Random& random, const SearchSpace& space);
 
-/// A fair scene that differs a little from the given one: in the lines, speeds, times and sizes of some obstacles and
+/// A valid scene that differs a little from the given one: in the lines, speeds, times and sizes of some obstacles and
 /// perhaps in the start.
 SearchScene mutated(Random& random, const SearchSpace& space, const SearchScene& scene);
 

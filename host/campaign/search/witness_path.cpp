@@ -1,4 +1,4 @@
-#include "host/campaign/search/evasive_path.h"
+#include "host/campaign/search/witness_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +17,8 @@ double shortest_s(const Joints& step_rad, const Limits& limits) {
                   std::sqrt(6.0 * size_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff()));
 }
 
-EvasivePath draw_path(Random& random, const SearchScene& scene, const Limits& limits) {
-  EvasivePath path{scene.start_rad, {}};
+WitnessPath draw_path(Random& random, const SearchScene& scene, const Limits& limits) {
+  WitnessPath path{scene.start_rad, {}};
   const int knots = random.uniform(0.0, 1.0) < 0.6 ? 1 : 2;
   const double reach_rad = kReaches_rad[random.integer(0, 2)];
   double t_s = 0.0;
@@ -39,7 +39,7 @@ EvasivePath draw_path(Random& random, const SearchScene& scene, const Limits& li
 
 }  // namespace
 
-Joints EvasivePath::at(double t_s) const {
+Joints WitnessPath::at(double t_s) const {
   Joints q_rad = start_rad;
   for (const Segment& segment : segments) {
     const double u = std::clamp((t_s - segment.begin_s) / segment.duration_s, 0.0, 1.0);
@@ -48,10 +48,10 @@ Joints EvasivePath::at(double t_s) const {
   return q_rad;
 }
 
-bool keeps_limits(const EvasivePath& path, const Limits& limits) {
+bool keeps_limits(const WitnessPath& path, const Limits& limits) {
   double free_s = 0.0;
   Joints from_rad = path.start_rad;
-  for (const EvasivePath::Segment& segment : path.segments) {
+  for (const WitnessPath::Segment& segment : path.segments) {
     if (segment.begin_s < free_s || !(segment.duration_s > 0.0) ||
         shortest_s(segment.knot_rad - from_rad, limits) > segment.duration_s ||
         (segment.knot_rad - limits.lower_rad).minCoeff() < 0.0 ||
@@ -63,7 +63,7 @@ bool keeps_limits(const EvasivePath& path, const Limits& limits) {
   return true;
 }
 
-double path_clearance_m(const SearchScene& scene, const EvasivePath& path, double step_s, double enough_m) {
+double path_clearance_m(const SearchScene& scene, const WitnessPath& path, double step_s, double enough_m) {
   double least_m = sim::kNothingNear;
   const int steps = static_cast<int>(std::ceil(scene.duration_s() / step_s));
   for (int k = 0; k <= steps && least_m >= enough_m; ++k) {
@@ -74,16 +74,16 @@ double path_clearance_m(const SearchScene& scene, const EvasivePath& path, doubl
   return least_m;
 }
 
-double proven_clearance_m(const SearchScene& scene, const EvasivePath& path, const Limits& limits) {
+double proven_clearance_m(const SearchScene& scene, const WitnessPath& path, const Limits& limits) {
   if (path.start_rad != scene.start_rad || !keeps_limits(path, limits)) return -sim::kNothingNear;
   return path_clearance_m(scene, path, kFineStep_s);
 }
 
-std::optional<EvasivePath> find_way_out(Random& random, const SearchScene& scene, const Limits& limits, int draws) {
+std::optional<WitnessPath> find_witness(Random& random, const SearchScene& scene, const Limits& limits, int draws) {
   for (int draw = 0; draw < draws; ++draw) {
-    EvasivePath path = draw_path(random, scene, limits);
-    if (path_clearance_m(scene, path, kCoarseStep_s, kWayOutClearance_m) < kWayOutClearance_m) continue;
-    if (proven_clearance_m(scene, path, limits) >= kWayOutClearance_m) return path;
+    WitnessPath path = draw_path(random, scene, limits);
+    if (path_clearance_m(scene, path, kCoarseStep_s, kWitnessPathClearance_m) < kWitnessPathClearance_m) continue;
+    if (proven_clearance_m(scene, path, limits) >= kWitnessPathClearance_m) return path;
   }
   return std::nullopt;
 }
