@@ -32,7 +32,7 @@ SearchFamily search_family_named(const std::string& name);
 
 /// The LWA3 at rest, and obstacles that move towards it from t = 0 until all have passed.
 struct SearchScene {
-  SearchFamily family;
+  SearchFamily family = SearchFamily::kRest;
   Joints start_rad;
   std::vector<MovingCapsule> obstacles;
 

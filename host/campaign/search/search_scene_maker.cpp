@@ -80,7 +80,8 @@ SearchScene draw_search_scene(Random& random, const SearchSpace& space) {
   for (int draw = 0; draw < kMostDraws; ++draw) {
     SearchScene scene{space.family, draw_start(random, space.limits), {}};
     if (!is_valid(scene, space.limits, space.fastest_mps)) continue;
-    while (static_cast<int>(scene.obstacles.size()) < space.obstacles && add_obstacle(random, space, scene)) continue;
+    while (static_cast<int>(scene.obstacles.size()) < space.obstacles && add_obstacle(random, space, scene)) {
+    }
     if (static_cast<int>(scene.obstacles.size()) == space.obstacles) return scene;
   }
   throw std::runtime_error("no valid scene of the search found");

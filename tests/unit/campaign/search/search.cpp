@@ -37,7 +37,7 @@ const SearchResult& unshielded() {
   return result;
 }
 
-void a_controller_without_shield_is_found_guilty_with_a_witness(void**) {
+void a_controller_without_shield_touches_obstacles_that_a_witness_avoids(void**) {
   for (const SearchFamily family : {SearchFamily::kRest, SearchFamily::kTrack}) {
     const SearchResult result = search_with(model(!kShield), family, {1, 12});
     check(result.runs == 12, "%d runs", result.runs);
@@ -77,6 +77,22 @@ void every_witness_keeps_limits_and_clearance(void**) {
     }
     check(check_of.violation().empty(), "%s", check_of.violation().c_str());
   }
+}
+
+void a_witness_keeps_its_clearance_between_the_coarse_checks_of_the_draws_too(void**) {
+  const Limits limits = model(kShield).arm.limits;
+  int found = 0;
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    for (const Finding& finding : unshielded().findings) {
+      Random random("test", seed);
+      const auto witness = find_witness(random, finding.scene, limits, 100);
+      if (!witness) continue;
+      ++found;
+      const double least_m = path_clearance_m(finding.scene, *witness, 0.002);
+      check(least_m >= 0.01, "%g m", least_m);
+    }
+  }
+  check(found > 40, "only %d witnesses", found);
 }
 
 void a_path_that_proves_nothing_is_recognised(void**) {
@@ -175,9 +191,10 @@ void the_report_has_the_counts_and_every_scene(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(a_controller_without_shield_is_found_guilty_with_a_witness),
+      cmocka_unit_test(a_controller_without_shield_touches_obstacles_that_a_witness_avoids),
       cmocka_unit_test(the_shield_avoids_these_contacts),
       cmocka_unit_test(every_witness_keeps_limits_and_clearance),
+      cmocka_unit_test(a_witness_keeps_its_clearance_between_the_coarse_checks_of_the_draws_too),
       cmocka_unit_test(a_path_that_proves_nothing_is_recognised),
       cmocka_unit_test(the_result_depends_on_neither_threads_nor_shards),
       cmocka_unit_test(mutations_bring_the_obstacles_nearer),
