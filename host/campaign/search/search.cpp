@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/campaign/parallel.h"
+#include "host/campaign/progress.h"
 #include "host/campaign/runner.h"
 
 namespace sidestep::campaign {
@@ -91,7 +92,8 @@ struct ChainPlan {
 
 std::vector<ChainPlan> chains_of(const SearchPlan& plan) {
   std::vector<ChainPlan> chains;
-  for (int k = plan.shard - 1; k * kChainRuns < plan.runs; k += plan.shards)
+  const int count = (plan.runs + kChainRuns - 1) / kChainRuns;
+  for (int k = plan.shard - 1; k < count; k += plan.shards)
     chains.push_back(
         {scene_seed(plan.seed, static_cast<uint64_t>(k)), std::min(kChainRuns, plan.runs - k * kChainRuns)});
   return chains;
@@ -106,11 +108,6 @@ void add(SearchResult& sum, const SearchResult& result) {
 
 }  // namespace
 
-SearchResult run_chain(const SearchSpace& space, const Model& model, uint64_t seed, int runs, Progress& progress,
-                       const std::atomic<bool>& stop) {
-  return Chain(space, model, seed, runs, progress, stop).result();
-}
-
 int runs_of(const SearchPlan& plan) {
   int runs = 0;
   for (const ChainPlan& chain : chains_of(plan)) runs += chain.runs;
@@ -122,8 +119,9 @@ SearchResult search(const SearchSpace& space, const Model& model, const SearchPl
   const std::vector<ChainPlan> chains = chains_of(plan);
   std::vector<SearchResult> results(chains.size());
   Progress progress(static_cast<size_t>(runs_of(plan)), quiet);
-  run_parallel(chains.size(), jobs, stop,
-               [&](size_t i) { results[i] = run_chain(space, model, chains[i].seed, chains[i].runs, progress, stop); });
+  run_parallel(chains.size(), jobs, stop, [&](size_t i) {
+    results[i] = Chain(space, model, chains[i].seed, chains[i].runs, progress, stop).result();
+  });
   SearchResult sum;
   for (const SearchResult& result : results) add(sum, result);
   return sum;
