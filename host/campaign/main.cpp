@@ -13,6 +13,8 @@
 #include "host/campaign/config_name.h"
 #include "host/campaign/runner.h"
 #include "host/campaign/scene_export.h"
+#include "host/campaign/search/finding_file.h"
+#include "host/campaign/search/search_report.h"
 #include "host/campaign/table.h"
 
 namespace {
@@ -25,8 +27,11 @@ enum ExitCode { kDone = 0, kBadInput = 2, kInterruptedBySignal = 130 };
 std::atomic<bool> interrupted{false};
 
 struct Options {
-  std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output;
+  std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output,
+              search, scene;
   uint64_t count = 500, seed = 1;
+  int obstacles = 3;
+  double fastest_mps = 0.5;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool quiet = false, smoothness = false, no_cpu = false;
   std::vector<std::string> merge;
@@ -36,7 +41,7 @@ void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
                  "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
       .show_default();
-  app.add_option("--count", options.count, "scenes of each family")
+  app.add_option("--count", options.count, "scenes of each family, runs of a search")
       .show_default()
       .range(1, static_cast<int>(kMostScenes));
   app.add_option("--seed", options.seed, "seed of the run, from which the scenes' seeds follow")
@@ -52,10 +57,10 @@ void declare(CommandLine& app, Options& options) {
       .type_name("FILE");
   app.add_option("--base", options.base, "first link of the arm").type_name("LINK");
   app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
-  app.add_option("--shard", options.shard, "run only every N-th scene, starting at the I-th")
+  app.add_option("--shard", options.shard, "run only every N-th scene (or chain of a search), starting at the I-th")
       .show_default()
       .type_name("I/N");
-  app.add_option("--csv", options.csv, "write one row per trial to this file").type_name("FILE");
+  app.add_option("--csv", options.csv, "write one row per trial (or finding) to this file").type_name("FILE");
   app.add_option("--jobs", options.jobs, "number of threads").show_default().range(1, 256);
   app.add_flag("--quiet", options.quiet, "print no progress");
   app.add_flag("--smoothness", options.smoothness, "also print how smooth the commands were");
@@ -63,6 +68,15 @@ void declare(CommandLine& app, Options& options) {
   app.add_option("--replay", options.exported_scene, "only export this scene as a scenario of the simulator")
       .type_name("FAMILY:SEED");
   app.add_option("--output", options.output, "file for --replay (default: standard output)").type_name("FILE");
+  app.add_option("--search", options.search,
+                 "search for scenes in which the arm is touched although a path without contact exists: rest or track")
+      .type_name("FAMILY");
+  app.add_option("--obstacles", options.obstacles, "obstacles in every scene of --search").show_default().range(1, 5);
+  app.add_option("--fastest", options.fastest_mps, "largest speed of the obstacles of --search, m/s")
+      .show_default()
+      .range(0.3, 5.0)
+      .not_nan();
+  app.add_option("--scene", options.scene, "run one scene that --search printed, saved in this file").type_name("FILE");
   app.add_subcommand("merge", "print the tables of all trials in files of --csv")
       .add_option("files", options.merge, "CSV files")
       .required();
@@ -147,8 +161,46 @@ int write_exported_scene(const Options& options) {
   return kDone;
 }
 
+/// The configuration of a search. Throws std::runtime_error unless its arm is the LWA3.
+Config search_config(const Options& options) {
+  if (options.law == "plain") throw std::runtime_error("--search, --scene: the law plain ignores obstacles");
+  Config config = config_of(options);
+  if (dynamic_cast<const Lwa3Arm*>(judge_arm_of(config).get()) == nullptr)
+    throw std::runtime_error("--search, --scene: the arm must be the LWA3");
+  config.model = model_for(config.model, config.model.arm.limits);
+  return config;
+}
+
+int run_search(const Options& options) {
+  const Config config = search_config(options);
+  const SearchSpace space{search_family_named(options.search), options.obstacles, options.fastest_mps,
+                          config.model.arm.limits};
+  const Shard shard = to_shard(options.shard);
+  const SearchPlan plan{options.seed, static_cast<int>(options.count), static_cast<int>(shard.index),
+                        static_cast<int>(shard.count)};
+  if (!options.csv.empty()) write_findings(options.csv, options.law, {});  // fails before the search
+  const SearchResult result = search(space, config.model, plan, options.jobs, options.quiet, interrupted);
+  if (!options.csv.empty()) write_findings(options.csv, options.law, result.findings);
+  fmt::print("{}", search_report(space, options.law, result));
+  if (result.runs == runs_of(plan)) return kDone;
+  fmt::print(stderr, "campaign: interrupted after {} of {} runs\n", result.runs, runs_of(plan));
+  return kInterruptedBySignal;
+}
+
+int run_scene(const Options& options) {
+  const Config config = search_config(options);
+  const ProvenScene proven = load_proven_scene(options.scene);
+  const Limits& limits = config.model.arm.limits;
+  const auto controller = make_controller(&config.model, lwa3_arm(), limits);
+  fmt::print("{}", scene_report(proven.scene, run_search_trial(proven.scene, *controller),
+                                proven_clearance_m(proven.scene, proven.witness, limits)));
+  return kDone;
+}
+
 int act(const Options& options) {
   if (!options.merge.empty()) return merge(options);
+  if (!options.search.empty()) return run_search(options);
+  if (!options.scene.empty()) return run_scene(options);
   return options.exported_scene.empty() ? run_trials(options) : write_exported_scene(options);
 }
 

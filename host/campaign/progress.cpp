@@ -28,7 +28,7 @@ void Progress::add(bool touched, bool succeeded) {
     print_line();
 }
 
-void Progress::end() {
+Progress::~Progress() {
   if (!quiet_ && terminal_) fmt::print(stderr, "\r\033[K");
 }
 

@@ -14,7 +14,10 @@ class Progress {
 
   /// Counts one finished trial.
   void add(bool touched, bool succeeded);
-  void end();
+  /// Removes the bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
 
  private:
   void draw_bar();

@@ -6,6 +6,12 @@ namespace {
 constexpr double kNoise_m = 0.005, kLoss = 0.10;
 constexpr int64_t kRate_hz = 30, kDelay_us = 40'000;
 
+Obstacle moving_sphere(const PointMotion& centre) {
+  Obstacle obstacle = sphere_obstacle(centre.position_m, kSphereRadius_m);
+  obstacle.velocity_mps = centre.velocity_mps;
+  return obstacle;
+}
+
 }  // namespace
 
 Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed) {}
@@ -14,8 +20,8 @@ const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
   if (!scene_.family->real) {
     newest_.received_us = now_us;
     ++newest_.count;
-    newest_.spheres.clear();
-    for (const SpherePath& sphere : scene_.spheres) newest_.spheres.push_back(sphere.at(t_s));
+    newest_.obstacles.clear();
+    for (const SpherePath& sphere : scene_.spheres) newest_.obstacles.push_back(moving_sphere(sphere.at(t_s)));
     return newest_;
   }
   for (int64_t at_us; (at_us = next_capture_ * 1'000'000 / kRate_hz) <= now_us; ++next_capture_)
@@ -34,7 +40,7 @@ void Sensing::capture(int64_t at_us, double t_s) {
   for (const SpherePath& sphere : scene_.spheres) {
     PointMotion measured = sphere.at(t_s);
     for (int axis = 0; axis < 3; ++axis) measured.position_m[axis] += kNoise_m * random_.normal();
-    measurement.spheres.push_back(measured);
+    measurement.obstacles.push_back(moving_sphere(measured));
   }
   const bool lost = random_.uniform(0.0, 1.0) < kLoss;
   if (!lost) in_transit_.push_back(std::move(measurement));

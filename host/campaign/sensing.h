@@ -3,6 +3,7 @@
 #include <deque>
 #include <vector>
 
+#include "firmware/model/obstacle.h"
 #include "host/campaign/random.h"
 #include "host/campaign/scene.h"
 
@@ -11,8 +12,8 @@ namespace sidestep::campaign {
 /// An obstacle set as the controller receives it.
 struct ObstacleMeasurement {
   int64_t received_us = 0;
-  int64_t count = 0;  ///< number of sets received so far, this one included
-  std::vector<PointMotion> spheres;
+  int64_t count = 0;                ///< number of sets received so far, this one included
+  std::vector<Obstacle> obstacles;  ///< base frame; their ids do not count
 };
 
 /// Model of the obstacle sensor. Family real: 30 sets a second, 40 ms old, positions with noise, one set in ten is

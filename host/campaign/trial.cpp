@@ -34,7 +34,7 @@ class Loop {
     const Joints q_rad = plant_.q_rad(), qd_radps = plant_.qd_radps();
     const PointMotion target = target_at(scene_, t_s);
     const std::optional<OrientationTarget> orientation_target = orientation_target_at(scene_, t_s);
-    return controller_.cycle({now_us_, q_rad, qd_radps, target, orientation_target, sensing_.newest_at(now_us_, t_s)});
+    return controller_.cycle({now_us_, q_rad, qd_radps, &target, orientation_target, sensing_.newest_at(now_us_, t_s)});
   }
 
   void apply(const ControllerOutput& output) {
@@ -56,7 +56,7 @@ class Loop {
 TrialMetrics run_trial(const Scene& scene, TrialController& controller) {
   Loop loop(scene, controller);
   ControllerOutput output = loop.control(0.0);
-  for (int cycle = 0; !output.tracking; ++cycle) {
+  for (int cycle = 0; !output.ready; ++cycle) {
     if (cycle == kMostCyclesToTrack)
       throw std::runtime_error(fmt::format("the controller did not track: {}", output.message));
     loop.apply(output);

@@ -23,19 +23,12 @@ class StepController : public TrialController {
   ControllerOutput cycle(const ControllerInput& input) override {
     const double now_s = static_cast<double>(input.now_us) * 1e-6;
     arm_ = {input.now_us, input.q_rad, input.qd_radps};
-    target_.utime = input.now_us;
-    target_.position_m = input.target.position_m;
-    target_.velocity_mps = input.target.velocity_mps;
-    target_.tracks_orientation = input.orientation_target.has_value();
-    if (input.orientation_target) {
-      target_.orientation = input.orientation_target->orientation;
-      target_.angular_velocity_radps = input.orientation_target->velocity_radps;
-    }
+    if (input.target) store_target(input);
     if (input.obstacles.count != obstacles_count_) store_obstacles(input.obstacles);
 
     Inputs inputs;
     inputs.arm = {&arm_, now_s, ++cycles_};
-    inputs.target = {&target_, now_s, cycles_};
+    if (input.target) inputs.target = {&target_, now_s, cycles_};
     if (obstacles_count_ > 0)
       inputs.obstacles = {obstacles_.get(), static_cast<double>(input.obstacles.received_us) * 1e-6, obstacles_count_};
     inputs.guide = guide_;
@@ -47,7 +40,7 @@ class StepController : public TrialController {
       take_snapshot(model_, inputs, state_, now_s, snapshot_);
       guide_ = &foresight_.update(snapshot_);
     }
-    output.tracking = result.report.mode == Mode::kTrack;
+    output.ready = result.report.mode == (input.target ? Mode::kTrack : Mode::kHold);
     output.velocity_radps = result.command.velocity_radps;
     output.message = result.report.message;
     return output;
@@ -69,15 +62,22 @@ class StepController : public TrialController {
     }
   }
 
+  void store_target(const ControllerInput& input) {
+    target_.utime = input.now_us;
+    target_.position_m = input.target->position_m;
+    target_.velocity_mps = input.target->velocity_mps;
+    target_.tracks_orientation = input.orientation_target.has_value();
+    if (!input.orientation_target) return;
+    target_.orientation = input.orientation_target->orientation;
+    target_.angular_velocity_radps = input.orientation_target->velocity_radps;
+  }
+
   void store_obstacles(const ObstacleMeasurement& measurement) {
     obstacles_count_ = measurement.count;
-    obstacles_->count = static_cast<int>(measurement.spheres.size());
-    for (size_t i = 0; i < measurement.spheres.size(); ++i) {
-      const PointMotion& sphere = measurement.spheres[i];
-      Obstacle& obstacle = obstacles_->obstacles[i];
-      obstacle.id = static_cast<int32_t>(i);
-      obstacle.capsule = {sphere.position_m, sphere.position_m, kSphereRadius_m};
-      obstacle.velocity_mps = sphere.velocity_mps;
+    obstacles_->count = static_cast<int>(measurement.obstacles.size());
+    for (size_t i = 0; i < measurement.obstacles.size(); ++i) {
+      obstacles_->obstacles[i] = measurement.obstacles[i];
+      obstacles_->obstacles[i].id = static_cast<int32_t>(i);
     }
   }
 
@@ -102,9 +102,9 @@ class PlainTrackingController : public TrialController {
   ControllerOutput cycle(const ControllerInput& input) override {
     const double begin_s = thread_cpu_s();
     ControllerOutput output;
-    output.velocity_radps = plain_tracking(arm_, limits_, input.target, input.q_rad, input.qd_radps);
+    output.velocity_radps = plain_tracking(arm_, limits_, *input.target, input.q_rad, input.qd_radps);
     output.cpu_s = thread_cpu_s() - begin_s;
-    output.tracking = true;
+    output.ready = true;
     return output;
   }
 

@@ -12,13 +12,13 @@ struct ControllerInput {
   int64_t now_us;
   const Joints& q_rad;
   const Joints& qd_radps;
-  const PointMotion& target;
+  const PointMotion* target;  ///< null: none, the controller holds
   const std::optional<OrientationTarget>& orientation_target;
   const ObstacleMeasurement& obstacles;
 };
 
 struct ControllerOutput {
-  bool tracking = false;  ///< false until the controller is ready
+  bool ready = false;     ///< the controller tracks the target, or holds if there is none
   Joints velocity_radps;  ///< command
   double cpu_s = 0.0;     ///< CPU time of the cycle
   const char* message = "";

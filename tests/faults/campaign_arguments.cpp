@@ -45,6 +45,14 @@ void bad_arguments_end_with_code_2(void**) {
                                 "--replay moving",
                                 "--replay slow:1",
                                 "--replay moving:1 --output /nowhere/at/all.yaml",
+                                "--search slow",
+                                "--search rest --obstacles 6",
+                                "--search rest --fastest nan",
+                                "--search rest --law plain",
+                                "--search rest --config firmware/config/panda.yaml",
+                                "--search rest --count 1 --csv /nowhere/at/all.csv",
+                                "--scene nowhere.yaml",
+                                "--scene firmware/config/lwa3.yaml",
                                 "--nonsense",
                                 "merge",
                                 "merge /nowhere/at/all.csv",
@@ -92,6 +100,29 @@ void an_interrupted_run_keeps_its_finished_rows(void**) {
   check(!rows.empty() && rows.size() < 100'000, "%zu rows", rows.size());
 }
 
+void a_finding_of_a_search_runs_again_from_its_line(void**) {
+  const std::string csv = scratch_folder() + "/findings.csv";
+  const Answer search = campaign("--search track --law paper --obstacles 1 --count 2 --quiet --csv " + csv);
+  check(search.code == 0 && search.err.empty(), "code %d: %s", search.code, search.err.c_str());
+  const size_t begin = search.out.find("\n{");
+  check(begin != std::string::npos, "no finding: %s", search.out.c_str());
+  const std::string scene = search.out.substr(begin + 1, search.out.find('\n', begin + 1) - begin - 1);
+  check(text_of(csv).find('"' + scene + '"') != std::string::npos, "the file lacks the scene");
+  const Answer again = campaign("--law paper --scene " + scratch_file("scene.yaml", scene));
+  check(again.code == 0 && search.out.find(again.out) != std::string::npos, "%s", again.out.c_str());
+}
+
+void an_interrupted_search_prints_its_table(void**) {
+  const std::string dir = scratch_folder();
+  const int status = std::system(("timeout --preserve-status -s INT 2 build/campaign --search rest --count 1000000 "
+                                  "--quiet >" +
+                                  dir + "/out 2>" + dir + "/err")
+                                     .c_str());
+  check(WIFEXITED(status) && WEXITSTATUS(status) == 130, "status %d", status);
+  check(text_of(dir + "/err").find("interrupted after") != std::string::npos, "%s", text_of(dir + "/err").c_str());
+  check(text_of(dir + "/out").find("rest     sidestep") != std::string::npos, "%s", text_of(dir + "/out").c_str());
+}
+
 void hostile_files_are_refused_with_one_line(void**) {
   const std::string file = scratch_folder() + "/whole.csv";
   write_csv(file, {{&family_named("moving"), "paper", 5, {}}});
@@ -130,6 +161,8 @@ int main() {
       cmocka_unit_test(shards_merge_to_the_table_of_one_run),
       cmocka_unit_test(merging_a_scene_twice_is_refused),
       cmocka_unit_test(an_interrupted_run_keeps_its_finished_rows),
+      cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
+      cmocka_unit_test(an_interrupted_search_prints_its_table),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

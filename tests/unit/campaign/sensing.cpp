@@ -13,10 +13,10 @@ void exact_sensing_reports_the_truth_in_every_cycle(void**) {
   for (int k = 0; k < 300; ++k) {
     const ObstacleMeasurement& measured = sensing.newest_at(1'000'000 + k * kPeriod_us, k * kPeriod_s);
     check(measured.count == k + 1 && measured.received_us == 1'000'000 + k * kPeriod_us, "cycle %d", k);
-    check(measured.spheres.size() == scene.spheres.size(), "cycle %d", k);
-    for (size_t i = 0; i < measured.spheres.size(); ++i) {
-      check_near(measured.spheres[i].position_m, scene.spheres[i].at(k * kPeriod_s).position_m, 0.0);
-      check_near(measured.spheres[i].velocity_mps, scene.spheres[i].at(k * kPeriod_s).velocity_mps, 0.0);
+    check(measured.obstacles.size() == scene.spheres.size(), "cycle %d", k);
+    for (size_t i = 0; i < measured.obstacles.size(); ++i) {
+      check_near(measured.obstacles[i].capsule.start, scene.spheres[i].at(k * kPeriod_s).position_m, 0.0);
+      check_near(measured.obstacles[i].velocity_mps, scene.spheres[i].at(k * kPeriod_s).velocity_mps, 0.0);
     }
   }
 }
@@ -45,8 +45,8 @@ Statistics watch(double duration_s) {
     ++statistics.received;
     const double captured_s = static_cast<double>(measured.received_us - 40'000 - start_us) / 1e6;
     const PointMotion truth = scene.spheres[0].at(captured_s);
-    check_near(measured.spheres[0].velocity_mps, truth.velocity_mps, 0.0);
-    const double noise_m = (measured.spheres[0].position_m - truth.position_m).x();
+    check_near(measured.obstacles[0].velocity_mps, truth.velocity_mps, 0.0);
+    const double noise_m = (measured.obstacles[0].capsule.start - truth.position_m).x();
     statistics.noise_sum_m += noise_m;
     statistics.noise_squares_m2 += noise_m * noise_m;
   }
@@ -65,7 +65,7 @@ void obstacles_are_measured_at_rest_while_the_scene_is_frozen(void**) {
   const Scene scene = make_scene(family_named("real"), 2);
   Sensing sensing(scene);
   for (int k = 0; k < 100; ++k)
-    check_near(sensing.newest_at(1'000'000 + k * kPeriod_us, 0.0).spheres[0].position_m,
+    check_near(sensing.newest_at(1'000'000 + k * kPeriod_us, 0.0).obstacles[0].capsule.start,
                scene.spheres[0].at(0.0).position_m, 0.03);
 }
 

@@ -18,10 +18,10 @@ class WitnessController : public TrialController {
 
   ControllerOutput cycle(const ControllerInput& input) override {
     const int k = cycles_++ - delay_;
-    target_ = input.target;
-    if (!input.obstacles.spheres.empty()) sphere_ = input.obstacles.spheres[0];
+    target_ = *input.target;
+    if (!input.obstacles.obstacles.empty()) sphere_m_ = input.obstacles.obstacles[0].capsule.start;
     ControllerOutput output;
-    output.tracking = k >= 0;
+    output.ready = k >= 0;
     output.velocity_radps = Joints::Zero(input.q_rad.size());
     output.message = "waits for the delay";
     if (k >= 0) output.velocity_radps = (witness_rad(scene_, (k + 1) * kPeriod_s) - input.q_rad) / kPeriod_s;
@@ -30,13 +30,14 @@ class WitnessController : public TrialController {
 
   int cycles() const { return cycles_; }
   const PointMotion& target() const { return target_; }
-  const PointMotion& sphere() const { return sphere_; }
+  const sidestep::Vector3& sphere_m() const { return sphere_m_; }
 
  private:
   const Scene& scene_;
   int delay_;
   int cycles_ = 0;
-  PointMotion target_, sphere_;
+  PointMotion target_;
+  sidestep::Vector3 sphere_m_;
 };
 
 /// Keeps the arm at rest.
@@ -44,7 +45,7 @@ class IdleController : public TrialController {
  public:
   ControllerOutput cycle(const ControllerInput&) override {
     ControllerOutput output;
-    output.tracking = true;
+    output.ready = true;
     output.velocity_radps = Joints::Zero(7);
     return output;
   }
@@ -103,7 +104,7 @@ void the_scene_is_frozen_until_the_controller_tracks(void**) {
   const TrialMetrics a = run_trial(scene, prompt), b = run_trial(scene, slow);
   check(slow.cycles() == prompt.cycles() + 123, "%d cycles", slow.cycles());
   check(a.clearance_m == b.clearance_m && a.error_max_m == b.error_max_m, "the delay changed the result");
-  check_near(slow.sphere().position_m, scene.spheres[0].at(scene.duration_s() - kPeriod_s).position_m, 1e-9);
+  check_near(slow.sphere_m(), scene.spheres[0].at(scene.duration_s() - kPeriod_s).position_m, 1e-9);
   check_near(slow.target().position_m, target_at(scene, scene.duration_s() - kPeriod_s).position_m, 1e-9);
 }
 
@@ -130,7 +131,7 @@ class SpinController : public TrialController {
   ControllerOutput cycle(const ControllerInput& input) override {
     q_rad = input.q_rad;
     ControllerOutput output;
-    output.tracking = true;
+    output.ready = true;
     output.velocity_radps = Joints::Zero(7);
     output.velocity_radps[6] = 0.5;
     return output;
