@@ -22,8 +22,8 @@ struct QpSolution {
 };
 
 /// Slack scales sigma_t of the hard and the pass tier, m/s. The slack of a tier is sigma_t^2 times the sum of the
-/// multipliers of its active rows. With equal multipliers the hard tier thus yields a thousandth of what the pass tier
-/// yields.
+/// multipliers of its active rows. With equal multipliers the hard tier thus yields about a thousandth of what the pass
+/// tier yields.
 constexpr double kHardSlackScale_mps = 1e-3;
 constexpr double kPassSlackScale_mps = 3e-2;
 

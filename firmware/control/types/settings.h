@@ -103,7 +103,7 @@ struct Settings {
   /// (control/extrapolation.h) and for jumps (control/obstacle_memory.h).
   double obstacle_speed_bound_mps = 2.0;
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
-  bool bridges_outliers = true;      ///< false in rollouts: their arm has no encoders (input_monitor.h)
+  bool bridges_outliers = true;      ///< false in rollouts: a state out of reach is a jump there, never an outlier
   double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint (command_stream.h)
 
   double period_s() const { return 1.0 / rate_hz; }
