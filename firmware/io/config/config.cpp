@@ -17,8 +17,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};  // check_limits() decides
 
-// The ranges below hold every value that makes sense for an arm, and none that takes a protection away. They are
-// documented in firmware/config/lwa3.yaml, which a test compares.
+// The ranges below hold every value that makes sense for an arm, and none that takes a protection away. Those of the
+// paper's law, which has no protections, are wide, for experiments. They are documented in firmware/config/lwa3.yaml,
+// which a test compares.
 
 void read_limits(YamlSection limits, Arm& arm) {
   limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps, kAnyNumber);
@@ -34,22 +35,22 @@ void read_limits(YamlSection limits, Arm& arm) {
 }
 
 void read_paper(YamlSection paper, PaperGains& gains) {
-  paper.number("k_pos_per_s2", gains.k_pos_per_s2, {0.0, 1000.0});
-  paper.number("k_vel_per_s", gains.k_vel_per_s, {0.0, 1000.0});
-  paper.number("k_rpos_m2ps2", gains.k_rpos_m2ps2, {0.0, 100.0});
-  paper.number("k_rvel_m2ps2", gains.k_rvel_m2ps2, {0.0, 100.0});
-  paper.number("rho_0_m", gains.rho_0_m, {0.01, 5.0});
-  paper.number("rho_v_m", gains.rho_v_m, {0.01, 5.0});
-  paper.number("rho_min_m", gains.rho_min_m, {0.001, 1.0});
-  paper.number("v_max_mps", gains.v_max_mps, {0.01, 10.0});
-  paper.number("lambda_0", gains.lambda_0, {0.0, 1.0});
-  paper.number("sigma_0", gains.sigma_0, {0.001, 1.0});
-  paper.number("lambda_n", gains.lambda_n, {0.001, 1.0});
-  paper.number("x_m_mps", gains.x_m_mps, {0.0, 10.0});
-  paper.number("d_m_m", gains.d_m_m, {0.01, 5.0});
-  paper.number("d_1_m", gains.d_1_m, {0.01, 5.0});
-  paper.number("d_2_m", gains.d_2_m, {0.0, 5.0});
-  paper.number("k_ori_per_s", gains.k_ori_per_s, {0.0, 50.0});
+  paper.number("k_pos_per_s2", gains.k_pos_per_s2, {0.0, 1e6});
+  paper.number("k_vel_per_s", gains.k_vel_per_s, {0.0, 1e6});
+  paper.number("k_rpos_m2ps2", gains.k_rpos_m2ps2, {0.0, 1e6});
+  paper.number("k_rvel_m2ps2", gains.k_rvel_m2ps2, {0.0, 1e6});
+  paper.number("rho_0_m", gains.rho_0_m, {0.0001, 1e6});
+  paper.number("rho_v_m", gains.rho_v_m, {0.0001, 1e6});
+  paper.number("rho_min_m", gains.rho_min_m, {0.0001, 1e6});
+  paper.number("v_max_mps", gains.v_max_mps, {0.0001, 1e6});
+  paper.number("lambda_0", gains.lambda_0, {0.0, 1e6});
+  paper.number("sigma_0", gains.sigma_0, {0.0001, 1e6});
+  paper.number("lambda_n", gains.lambda_n, {0.0001, 1e6});
+  paper.number("x_m_mps", gains.x_m_mps, {0.0, 1e6});
+  paper.number("d_m_m", gains.d_m_m, {0.0001, 1e6});
+  paper.number("d_1_m", gains.d_1_m, {0.0001, 1e6});
+  paper.number("d_2_m", gains.d_2_m, {0.0, 1e6});
+  paper.number("k_ori_per_s", gains.k_ori_per_s, {0.0, 1e6});
   std::string tool_velocity = "measured";
   paper.choice("tool_velocity", tool_velocity, {"measured", "planned"});
   gains.tool_velocity = tool_velocity == "planned" ? ToolVelocity::kPlanned : ToolVelocity::kMeasured;
@@ -71,9 +72,9 @@ void read_sidestep(YamlSection sidestep, SidestepGains& gains) {
 
 void read_shield(YamlSection section, ShieldSettings& shield) {
   section.flag("enabled", shield.enabled);
-  section.number("hard_clearance_m", shield.hard_clearance_m, {0.001, 0.5});
+  section.number("hard_clearance_m", shield.hard_clearance_m, {0.0, 0.5});
   section.number("hard_gain_per_s", shield.hard_gain_per_s, {0.1, 100.0});
-  section.number("pass_clearance_m", shield.pass_clearance_m, {0.001, 0.5});
+  section.number("pass_clearance_m", shield.pass_clearance_m, {0.0, 0.5});
   section.number("pass_gain_per_s", shield.pass_gain_per_s, {0.1, 100.0});
   section.number("pass_reaction_s", shield.pass_reaction_s, {0.0, 1.0});
   section.number("pass_horizon_s", shield.pass_horizon_s, {0.1, 10.0});
@@ -85,7 +86,7 @@ void read_shield(YamlSection section, ShieldSettings& shield) {
   section.number("comfort_far_m", shield.comfort_far_m, {0.01, 10.0});
   if (shield.comfort_far_m <= shield.comfort_near_m) section.fail("comfort_far_m", "must be above comfort_near_m");
   section.number("tool_weight", shield.tool_weight, {0.0, 10000.0});
-  section.number("self_clearance_m", shield.self_clearance_m, {0.001, 0.5});
+  section.number("self_clearance_m", shield.self_clearance_m, {0.0, 0.5});
   section.number("range_m", shield.range_m, {0.1, 5.0});
   if (shield.pass_clearance_m <= shield.hard_clearance_m)
     section.fail("pass_clearance_m", "must be above hard_clearance_m");
@@ -164,7 +165,7 @@ void read_blackbox(YamlSection section, BlackboxSettings& blackbox) {
 void read_foresight(YamlSection section, ForesightSettings& foresight) {
   section.flag("enabled", foresight.enabled);
   section.number("horizon_s", foresight.horizon_s, {0.5, 20.0});
-  section.number("clearance_m", foresight.clearance_m, {0.001, 0.5});
+  section.number("clearance_m", foresight.clearance_m, {0.0, 0.5});
   section.whole("seed", foresight.seed, {0.0, 1e9});
   section.finish();
 }
@@ -211,10 +212,16 @@ std::vector<std::string> warnings_of(const Settings& settings, const Arm& arm, c
   warn_if(!settings.wait_for_obstacles,
           "obstacles.wait_for_first is false: the arm moves before it knows any obstacle");
   warn_if(settings.timeouts.coast_s == 0.0, "timeouts.coast_s is 0: an obstacle that is not reported is forgotten");
-  for (int i = 0; i < arm.joints; ++i)
+  for (int i = 0; i < arm.joints; ++i) {
+    constexpr double kFastest_radps = 30.0, kSharpest_radps2 = 200.0;
+    warn_if(arm.limits.velocity_radps[i] > kFastest_radps || arm.limits.acceleration_radps2[i] > kSharpest_radps2,
+            fmt::format("limits: joint '{}' has a velocity limit above {:g} rad/s or an acceleration limit above {:g} "
+                        "rad/s2, which limits nothing",
+                        arm.joint_names[i], kFastest_radps, kSharpest_radps2));
     warn_if(arm.limits.lower_rad[i] < of_urdf.lower_rad[i] || arm.limits.upper_rad[i] > of_urdf.upper_rad[i] ||
                 arm.limits.velocity_radps[i] > of_urdf.velocity_radps[i],
             fmt::format("limits: joint '{}' may go beyond the limits of the URDF", arm.joint_names[i]));
+  }
   return warnings;
 }
 

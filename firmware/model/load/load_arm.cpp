@@ -16,7 +16,7 @@ namespace sidestep {
 namespace {
 
 // Faster than any joint, and small enough that products of these do not overflow.
-constexpr double kFastest_radps = 30.0, kSharpest_radps2 = 200.0;  // a limit beyond does not limit
+constexpr double kFastest_radps = 1e9, kSharpest_radps2 = 1e9;
 
 using sidestep::to_eigen;
 

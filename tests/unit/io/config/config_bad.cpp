@@ -105,8 +105,6 @@ void a_bad_config_is_refused_with_one_line_naming_file_and_key(void**) {
       {"limits: {acceleration_radps2: 1e300}", "acceleration"},
       {"limits: {acceleration_radps2: -10}", "acceleration"},
       {"limits: {acceleration_radps2: .inf}", "acceleration"},
-      {"limits: {velocity_radps: 31}", "velocity"},
-      {"limits: {acceleration_radps2: 1e9}", "acceleration"},
       {"shield: {pass_clearance_m: 0.3, range_m: 0.2}", "shield.range_m"},
       {"limits: {lower_rad: 2, upper_rad: 1}", "lower"},
       {"limits: {upper_rad: [6, -2, 6, 2, 6, 2, 6]}", "joint_2"},
@@ -189,6 +187,7 @@ void a_protection_that_is_switched_off_is_warned_of(void**) {
       {"timeouts: {coast_s: 0}", "timeouts.coast_s"},
       {"limits: {upper_rad: [6, 2, 6, 1, 6, 1, 6]}", "joint_2"},
       {"limits: {velocity_radps: [2, 2, 2, 2, 2, 2, 3]}", "joint_7"},
+      {"limits: {acceleration_radps2: [10, 10, 10, 201, 10, 10, 10]}", "joint_4"},
   };
   for (const auto& each : cases) {
     const Config config = load_config(scratch_file("config.yaml", std::string(kRobot) + each.yaml), {});
