@@ -38,18 +38,17 @@ std::string to_yaml(const std::vector<Item>& items) {
 }
 
 MovingCapsule read_obstacle(YamlSection& section) {
-  const MovingCapsule obstacle{section.number("radius_m", {1e-3, 1.0}), section.vector("half_axis_m", kLength),
-                               section.vector("crossing_m", kLength), section.number("crossing_s", kTime),
-                               section.vector("velocity_mps", kLength)};
+  MovingCapsule obstacle{section.number("radius_m", {1e-3, 1.0}), section.vector("half_axis_m", kLength),
+                         section.vector("crossing_m", kLength), section.number("crossing_s", kTime),
+                         section.vector("velocity_mps", kLength)};
   if (obstacle.velocity_mps.norm() < kLeastSpeed_mps) section.fail("velocity_mps", "is too slow to pass");
   section.finish();
   return obstacle;
 }
 
 WitnessPath::Segment read_segment(YamlSection& section) {
-  const WitnessPath::Segment segment{section.number("begin_s", {0.0, 100.0}),
-                                     section.number("duration_s", {1e-3, 100.0}),
-                                     section.numbers("knot_rad", kJoints, kJoints, kAngle)};
+  WitnessPath::Segment segment{section.number("begin_s", {0.0, 100.0}), section.number("duration_s", {1e-3, 100.0}),
+                               section.numbers("knot_rad", kJoints, kJoints, kAngle)};
   section.finish();
   return segment;
 }

@@ -47,8 +47,8 @@ double passed_s(const MovingCapsule& obstacle) {
 }
 
 bool misses_column(const MovingCapsule& obstacle, const ArmPose& pose, double duration_s) {
-  for (double t_s = 0.0; t_s <= duration_s; t_s += kColumnStep_s)
-    if (link_clearance_m(pose, 0, obstacle.at(t_s)) < kColumnClearance_m) return false;
+  for (int k = 0; k * kColumnStep_s <= duration_s; ++k)
+    if (link_clearance_m(pose, 0, obstacle.at(k * kColumnStep_s)) < kColumnClearance_m) return false;
   return true;
 }
 

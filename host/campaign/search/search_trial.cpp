@@ -39,7 +39,7 @@ class Loop {
     measurement_.obstacles.clear();
     for (const MovingCapsule& obstacle : scene_.obstacles) measurement_.obstacles.push_back(obstacle_at(obstacle, t_s));
     const PointMotion* target = scene_.family == SearchFamily::kTrack ? &target_ : nullptr;
-    const ControllerOutput output = controller_.cycle({now_us_, q_rad, qd_radps, target, std::nullopt, measurement_});
+    ControllerOutput output = controller_.cycle({now_us_, q_rad, qd_radps, target, std::nullopt, measurement_});
     plant_.command(output.velocity_radps);
     plant_.advance(kPeriod_us);
     now_us_ += kPeriod_us;
