@@ -12,13 +12,6 @@
 namespace sidestep {
 namespace {
 
-/// The newest target, extrapolated to now_s. The paper's law takes its velocities as they are.
-Target target_now(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
-  const Target& target = *latest.message;
-  return extrapolated(model.settings.law == Law::kPaper ? target : bounded_speed(model.arm, poses, target),
-                      latest.age_s(now_s));
-}
-
 /// The joint velocity that the law computes; zero unless tracking.
 NominalCommand evaluate_law(const Model& model, const LawInput& input, const State& state, const Guide* guide,
                             double now_s) {
@@ -107,7 +100,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 
-  const Target target = inputs.target.message ? target_now(model, poses, inputs.target, now_s) : Target{};
+  const Target target = inputs.target.message ? present_target(model, poses, inputs.target, now_s) : Target{};
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;

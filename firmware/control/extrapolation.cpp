@@ -37,4 +37,10 @@ Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& targe
   return bounded;
 }
 
+Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
+  const Target& target = *latest.message;
+  return extrapolated(model.settings.bounds_target_speed ? bounded_speed(model.arm, poses, target) : target,
+                      latest.age_s(now_s));
+}
+
 }  // namespace sidestep

@@ -23,4 +23,8 @@ Target extrapolated(const Target& target, double dt_s);
 /// larger velocity would only make the shield prefer the target to the clearances.
 Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
 
+/// The newest target, extrapolated from its receipt to now_s; its velocities are bounded as above where
+/// Settings::bounds_target_speed is set. There must be one.
+Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s);
+
 }  // namespace sidestep

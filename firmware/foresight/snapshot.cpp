@@ -50,7 +50,7 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   snapshot.state = state;
   snapshot.arm = state.arm_monitor.accepted.state;
   const LinkPoses poses = forward_kinematics(model.arm, snapshot.arm.position_rad);
-  snapshot.target = extrapolated(bounded_speed(model.arm, poses, *inputs.target.message), inputs.target.age_s(now_s));
+  snapshot.target = present_target(model, poses, inputs.target, now_s);
 
   NearestSelection nearest(snapshot.nearby, model.settings.foresight.horizon_s);
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);

@@ -1,11 +1,11 @@
 #include <fstream>
 #include <memory>
-#include <sidestep/loop_timing_t.hpp>
 
 #include "tests/support/check.h"
 #include "tests/support/datagram_sender.h"
 #include "tests/support/datagrams.h"
 #include "tests/support/live_scene.h"
+#include "tests/support/timing_subscriber.h"
 
 using namespace sidestep;
 using test::Bytes;
@@ -13,6 +13,7 @@ using test::DatagramSender;
 using test::Fragment;
 using test::LiveScene;
 using test::named;
+using test::TimingSubscriber;
 
 namespace {
 
@@ -62,17 +63,6 @@ void crafted_fragments_neither_end_nor_disturb_the_controller(void**) {
   test::check_stream(scene.arm);
 }
 
-/// Stores the messages of LOOP_TIMING.
-struct TimingSubscriber {
-  lcm::LCM lcm{test::private_lcm_url()};
-  std::vector<loop_timing_t> received;
-
-  TimingSubscriber() { lcm.subscribe("LOOP_TIMING", &TimingSubscriber::on_timing, this); }
-  void on_timing(const lcm::ReceiveBuffer*, const std::string&, const loop_timing_t* timing) {
-    received.push_back(*timing);
-  }
-};
-
 void full_sets_of_obstacles_arrive_at_33_hz(void**) {
   LiveScene scene("sidestep");
   scene.arm.sends_obstacles = false;
@@ -86,7 +76,7 @@ void full_sets_of_obstacles_arrive_at_33_hz(void**) {
     scene.arm.target_m = n % 26 < 13 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
     scene.arm.run(0.03);
   }
-  while (timing.lcm.handleTimeout(0) > 0) continue;
+  timing.drain();
   assert_true(!timing.received.empty());
   const loop_timing_t& last = timing.received.back();
   print_message("tracking in %.0f %%; %ld datagrams lost, %ld messages incomplete\n", 100 * tracking(scene, first),

@@ -1,14 +1,14 @@
-#include <sidestep/loop_timing_t.hpp>
-
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/live_arm.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/process.h"
+#include "tests/support/timing_subscriber.h"
 
 using namespace sidestep;
 using test::LiveArm;
 using test::Process;
+using test::TimingSubscriber;
 
 namespace {
 
@@ -18,21 +18,6 @@ Process start_controller(const std::string& rate) {
   return Process({"build/controller", "--config", "firmware/config/lwa3.yaml", "--rate", rate, "--lcm-url",
                   test::private_lcm_url()});
 }
-
-/// Subscribes to LOOP_TIMING.
-struct TimingSubscriber {
-  lcm::LCM lcm{test::private_lcm_url()};
-  std::vector<loop_timing_t> received;
-
-  TimingSubscriber() { lcm.subscribe("LOOP_TIMING", &TimingSubscriber::on_timing, this); }
-  void on_timing(const lcm::ReceiveBuffer*, const std::string&, const loop_timing_t* timing) {
-    received.push_back(*timing);
-  }
-  void drain() {
-    while (lcm.handleTimeout(0) > 0) {
-    }
-  }
-};
 
 /// Commands are 1 ms apart and within the limits.
 void a_loop_at_1000_hz_moves_the_arm_within_its_limits(void**) {

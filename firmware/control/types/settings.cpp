@@ -8,6 +8,7 @@ void use_law(Settings& settings, Law law) {
   settings.shield.enabled = false;
   settings.foresight.enabled = false;
   settings.timeouts.coast_s = 0.0;
+  settings.bounds_target_speed = false;
 }
 
 }  // namespace sidestep

@@ -102,6 +102,7 @@ struct Settings {
   /// The speed that an obstacle may have whatever velocity is reported: for the growth of obstacles
   /// (control/extrapolation.h) and for jumps (control/obstacle_memory.h).
   double obstacle_speed_bound_mps = 2.0;
+  bool bounds_target_speed = true;   ///< of the target's own velocity (extrapolation.h); false with the paper's law
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
   bool bridges_outliers = true;      ///< false in rollouts: a state out of reach is a jump there, never an outlier
   double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint (command_stream.h)
@@ -109,7 +110,8 @@ struct Settings {
   double period_s() const { return 1.0 / rate_hz; }
 };
 
-/// Chooses the law. The paper's law runs as published: without shield, foresight and obstacle memory.
+/// Chooses the law. The paper's law runs as published: without shield, foresight and obstacle memory, and
+/// with the target's velocity as it is.
 void use_law(Settings& settings, Law law);
 
 }  // namespace sidestep
