@@ -219,6 +219,11 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) $(BUILD)/.flags $(HEADERS:=.gch) | $(READY)
 	@echo "c++ $<"
 	@$(COMPILE) $(HEADERS:%=-include %) -MMD -MP -c $< -o $@
 
+# Runs once at the start. Optimising the templates of CLI11 would take as long again as reading them. (At another level
+# of optimisation gcc cannot use the precompiled header.)
+$(BUILD)/obj/firmware/base/command_line.o: private FLAGS += -O0
+$(BUILD)/obj/firmware/base/command_line.o: private HEADERS :=
+
 # Only the tests need cmocka.
 $(SUPPORT) $(TESTS:$(BUILD)/%=$(BUILD)/obj/%.o): | $(READY).test
 

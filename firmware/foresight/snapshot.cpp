@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/control/extrapolation.h"
+#include "firmware/model/nearest_points.h"
 
 namespace sidestep {
 namespace {

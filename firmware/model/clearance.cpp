@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware/model/pair_proximity.h"
+
 namespace sidestep {
 namespace {
 

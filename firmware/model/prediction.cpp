@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/base/bounded_list.h"
+#include "firmware/model/nearest_points.h"
 #include "firmware/model/proximity.h"
 
 namespace sidestep {

@@ -1,5 +1,7 @@
 #include "firmware/model/proximity.h"
 
+#include "firmware/model/pair_proximity.h"
+
 namespace sidestep {
 namespace {
 

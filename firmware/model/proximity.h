@@ -29,23 +29,6 @@ struct ClosestApproach {
   bool head_on = false;  ///< the path passes the link's axis within 5 mm: passing on the side of -normal is as good
 };
 
-/// The Proximity (without its indices) of a link to a point or segment grown by radius_m. points: the nearest points;
-/// gap = points.a - points.b; gap_m = |gap|. Where gap_m <= 1e-9 the normal is some direction perpendicular to the
-/// link's axis; z if the link is a sphere.
-inline Proximity proximity_of(const Capsule& link, double radius_m, const NearestPoints& points, const Vector3& gap,
-                              double gap_m) {
-  Proximity pair;
-  pair.on_arm = points.a;
-  pair.on_obstacle = points.b;
-  pair.axis_distance_m = gap_m;
-  pair.distance_m = gap_m - link.radius_m - radius_m;
-  if (gap_m > 1e-9)
-    pair.normal = gap / gap_m;
-  else if (link.end != link.start)
-    pair.normal = (link.end - link.start).unitOrthogonal();
-  return pair;
-}
-
 /// The Proximity (without its indices) of a link, first, to a capsule, which may be another link: the normal points
 /// from the second to the first.
 Proximity measure_pair(const Capsule& link, const Capsule& obstacle);

@@ -21,6 +21,10 @@ bool is_positive_definite(const SquareMatrix<n>& matrix) {
   return Eigen::LLT<SquareMatrix<n>>(matrix).info() == Eigen::Success;
 }
 
+Vector3 solve_llt(const Matrix3& matrix, const Vector3& b) {
+  return matrix.llt().solve(b);
+}
+
 Vector3 solve_ldlt(const Matrix3& matrix, const Vector3& b) {
   return matrix.ldlt().solve(b);
 }

@@ -22,6 +22,9 @@ SquareMatrix<n> cholesky_root(const SquareMatrix<n>& matrix);
 template <int n>
 bool is_positive_definite(const SquareMatrix<n>& matrix);
 
+/// x with matrix x = b, for a symmetric positive definite matrix, by a Cholesky decomposition.
+Vector3 solve_llt(const Matrix3& matrix, const Vector3& b);
+
 /// x with matrix x = b, for a symmetric positive semidefinite matrix, by an LDL^T decomposition. 3 x 3, or sized at run
 /// time with at most 6 x 6.
 Vector3 solve_ldlt(const Matrix3& matrix, const Vector3& b);

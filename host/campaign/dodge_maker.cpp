@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/model/capsule.h"
+#include "firmware/model/nearest_points.h"
 
 namespace sidestep::campaign {
 namespace {

@@ -13,7 +13,7 @@ constexpr double kPosition_per_s2 = 20.0, kVelocity_per_s = 8.94, kLargestSpeed_
 constexpr double kLambda = 0.08, kSigma = 0.08;  // largest damping factor; least singular value below which it acts
 
 Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
-  Matrix3 gram = jacobian * jacobian.transpose();
+  Matrix3 gram = jacobian.lazyProduct(jacobian.transpose());
   const double sigma = std::sqrt(std::max(0.0, least_eigenvalue(gram)));
   const double lambda = sigma < kSigma ? kLambda * (1.0 - sigma / kSigma) : 0.0;
   gram.diagonal().array() += lambda * lambda;

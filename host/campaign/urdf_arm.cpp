@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/model/kinematics.h"
+#include "firmware/model/nearest_points.h"
 
 namespace sidestep::campaign {
 namespace {

@@ -1,6 +1,8 @@
 // The library headers that most files include, compiled once for the whole build (gcc only, see the Makefile). Each
 // file still includes what it uses: the sanitizer, arm64 and fuzz builds and clang-tidy read the files without this
 // one.
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -11,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>

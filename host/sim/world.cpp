@@ -46,6 +46,10 @@ std::vector<Obstacle> World::all() const {
   return all;
 }
 
+Eigen::Isometry3d Motion::base_from_body() const {
+  return Eigen::Translation3d(position_m) * orientation;
+}
+
 World advanced(const World& world, double dt_s) {
   World result = world;
   advance(result.target.motion, dt_s);

@@ -19,7 +19,7 @@ struct Motion {
   std::shared_ptr<const Path> path;  ///< null: constant velocity; shared by all copies
   double path_s = 0.0;               ///< current time on the path
 
-  Eigen::Isometry3d base_from_body() const { return Eigen::Translation3d(position_m) * orientation; }
+  Eigen::Isometry3d base_from_body() const;
 };
 
 struct Obstacle {

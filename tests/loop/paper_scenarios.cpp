@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "firmware/model/clearance.h"
+#include "firmware/model/nearest_points.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "firmware/model/nearest_points.h"
 #include "firmware/model/prediction.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"

@@ -48,9 +48,8 @@ class SmallActiveSet {
   }
 
  private:
-  static constexpr int kMaxActive = 3;
+  static constexpr int kMaxActive = 3;   // the size of Matrix3 and Vector3
   static constexpr int kMaxChanges = 6;  // twice the capacity: rows may be removed again
-  using Multipliers = Eigen::Matrix<double, kMaxActive, 1>;
 
   struct ActiveRow {
     const ConstraintRow* row;
@@ -85,8 +84,8 @@ class SmallActiveSet {
   /// Solves the KKT system with the active rows as equalities, for the multipliers, the velocity, the slacks and the
   /// cost. Returns the index of the least multiplier.
   int solve_kkt() {
-    Eigen::Matrix<double, kMaxActive, kMaxActive> gram = Eigen::Matrix<double, kMaxActive, kMaxActive>::Identity();
-    Multipliers violation_mps = Multipliers::Zero();
+    Matrix3 gram = Matrix3::Identity();
+    Vector3 violation_mps = Vector3::Zero();
     for (int i = 0; i < active_.size(); ++i) {
       const ConstraintRow& row = *active_[i].row;
       violation_mps[i] = row.bound - row.row.dot(objective_.nominal_radps);
@@ -95,7 +94,7 @@ class SmallActiveSet {
         gram(i, j) = gram(j, i) = row.row.dot(active_[j].inverse_hessian_row) + sigma_mps * sigma_mps;
       }
     }
-    lambda_ = gram.llt().solve(violation_mps);
+    lambda_ = solve_llt(gram, violation_mps);
     cost_ = 0.5 * lambda_.dot(violation_mps);
     velocity_radps_ = objective_.nominal_radps;
     slack_mps_ = {};
@@ -120,7 +119,7 @@ class SmallActiveSet {
   const QpObjective& objective_;
   TaskJacobian woodbury_;  ///< of size 0 without the tool's cost
   BoundedList<ActiveRow, kMaxActive> active_;
-  Multipliers lambda_;
+  Vector3 lambda_;  ///< multipliers
   JointVector velocity_radps_;
   std::array<double, kTiers> slack_mps_{};
   double cost_ = 0.0;

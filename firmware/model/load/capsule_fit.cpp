@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "firmware/model/load/circle.h"
+#include "firmware/model/nearest_points.h"
 
 namespace sidestep {
 namespace {

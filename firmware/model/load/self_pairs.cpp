@@ -5,6 +5,7 @@
 #include <random>
 
 #include "firmware/model/kinematics.h"
+#include "firmware/model/nearest_points.h"
 
 namespace sidestep {
 namespace {

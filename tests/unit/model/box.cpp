@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/model/nearest_points.h"
 #include "firmware/model/proximity.h"
 #include "tests/support/check.h"
 #include "tests/support/fcl_distance.h"

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "firmware/model/nearest_points.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

@@ -1,6 +1,7 @@
 #include "host/campaign/search/search_scene.h"
 
 #include "firmware/io/config/config.h"
+#include "firmware/model/nearest_points.h"
 #include "host/campaign/search/search_scene_maker.h"
 #include "tests/support/capsule_truth.h"
 #include "tests/support/check.h"

@@ -1,5 +1,6 @@
 #include "firmware/io/lcm/network_inputs.h"
 
+#include "firmware/model/nearest_points.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/messages.h"

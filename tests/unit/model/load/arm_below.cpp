@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/model/load/self_pairs.h"
+#include "firmware/model/nearest_points.h"
 #include "host/sim/truth.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "firmware/model/load/fit_cache.h"
+#include "firmware/model/nearest_points.h"
 #include "host/sim/solid.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
