@@ -143,9 +143,10 @@ QpSolution solve_sized(const ConstraintRows& rows, const VelocityRange& range, c
 
 QpSolution solve(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
   if (const auto exact = solve_small_active_set(rows, range, objective)) return *exact;
-  constexpr int kCommonJoints = 7, kSmall = 16;
+  constexpr int kCommonJoints = 7, kSmall = 12, kMedium = 28;
   if (objective.nominal_radps.size() > kCommonJoints) return solve_sized<kMaxJoints, kMaxRows>(rows, range, objective);
   if (rows.size() <= kSmall) return solve_sized<kCommonJoints, kSmall>(rows, range, objective);
+  if (rows.size() <= kMedium) return solve_sized<kCommonJoints, kMedium>(rows, range, objective);
   return solve_sized<kCommonJoints, kMaxRows>(rows, range, objective);
 }
 
