@@ -60,7 +60,8 @@ struct Objective {
 };
 
 /// The constraints in the solver's form, C x + c >= 0, and the solver. Its cost grows with the capacity, not with the
-/// number of rows; hence several sizes for the usual number of joints. Unused rows read 0 x + 1 >= 0.
+/// number of rows; hence several sizes for the usual number of joints. So does its tolerance: another size changes some
+/// results in the last bits. Unused rows read 0 x + 1 >= 0.
 template <int joint_capacity, int row_capacity>
 struct Constraints {
   static constexpr int kUnknowns = joint_capacity + kTiers;
