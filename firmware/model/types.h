@@ -13,8 +13,9 @@ using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
 
-/// Sized at run time, stored in place: none of these types uses the heap. Products of two such matrices are written as
-/// lazyProduct(): Eigen's `*` would bring in its product of large matrices, which takes seconds to compile.
+/// Sized at run time, stored in place: none of these types uses the heap. The product of two of these matrices is
+/// written as lazyProduct(): Eigen's `*` would instantiate the product of large matrices, which takes a second or two
+/// of compile time in every file. Matrix times vector is written as `*`.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxJoints>;
