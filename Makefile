@@ -17,8 +17,9 @@ EIQUADPROG_INCLUDE ?= $(wildcard $(BUILD)/venv/lib/python3*/site-packages/cmeel.
 SETUP    ?= yes
 
 # The caller may set CXX, CPPFLAGS, CXXFLAGS, LDFLAGS and LDLIBS. CXXFLAGS come last, so that another -O counts.
-# The same objects go into the programs and into the library, which exports only what its header declares.
-FLAGS     = -std=c++17 -O2 -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow $(GCC_FLAGS)
+# The same objects go into the programs and into the library, which exports only what its header declares. No products
+# and sums are contracted, so that all machines compute the same bits.
+FLAGS     = -std=c++17 -O2 -ffp-contract=off -pthread -fPIC -fvisibility=hidden -Wall -Wextra -Wpedantic -Wshadow $(GCC_FLAGS)
 # make sanitize: which sanitizers to build with. LCM's C++ binding casts its typed subscriptions in a form that vptr and
 # null report.
 FLAGS    += $(SANITIZE:%=-g1 -fsanitize=% -fno-sanitize=vptr,null -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -35,7 +36,7 @@ package   = $(or $(shell $(PKG_CONFIG) $(1) $(2) 2>/dev/null),$(3))
 PACKAGES  = $(eval PACKAGES := $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(call package,--cflags,eigen3,-I/usr/include/eigen3) \
               $(call package,--cflags,spdlog fmt,-DSPDLOG_COMPILED_LIB -DSPDLOG_FMT_EXTERNAL) $(call package,--cflags,yaml-cpp) $(call package,--cflags,lcm))))$(PACKAGES)
 INCLUDES  = -I. -isystem $(BUILD)/lcm $(PACKAGES) -isystem $(EIQUADPROG_INCLUDE)
-LIBS      = $(eval LIBS := -lassimp -lurdfdom_model -lkdl_parser -lorocos-kdl $(call package,--libs,yaml-cpp,-lyaml-cpp) -lconsole_bridge \
+LIBS      = $(eval LIBS := -lassimp -lqhullcpp -lqhull_r -lurdfdom_model -lkdl_parser -lorocos-kdl $(call package,--libs,yaml-cpp,-lyaml-cpp) -lconsole_bridge \
               $(call package,--libs,spdlog fmt,-lspdlog -lfmt) $(call package,--libs,lcm,-llcm))$(LIBS)
 COMPILE   = $(CXX) $(CPPFLAGS) $(FLAGS) $(WERROR) $(INCLUDES)
 LINK      = $(CXX) $(FLAGS) $(LDFLAGS)
@@ -44,7 +45,13 @@ LINK      = $(CXX) $(FLAGS) $(LDFLAGS)
 PRECOMPILED ?= $(if $(SANITIZE)$(findstring clang,$(CXX)),no,yes)
 HEADERS  := $(if $(filter yes,$(PRECOMPILED)),$(BUILD)/obj/precompiled.h)
 
-sources   = $(filter-out %/main.cpp,$(shell find $(1) -name '*.cpp'))
+# $(call progress,FILE) announces FILE with its number among the files to compile. A dry run counts them when the first
+# is compiled; $(BUILD)/.compiled gets a line for each.
+count     = $(eval count := $(shell mkdir -p $(BUILD); : >$(BUILD)/.compiled; MAKEFLAGS= $(MAKE) -n $(MAKEOVERRIDES) \
+              COUNTING=yes $(or $(MAKECMDGOALS),all) 2>/dev/null | grep -c '^echo c++'))$(count)
+progress  = @echo $(if $(COUNTING),c++,"[$$(echo >>$(BUILD)/.compiled; wc -l <$(BUILD)/.compiled)/$(count)] c++ $(1)")
+
+sources   = $(filter-out %/main.cpp,$(shell find -H $(1) -name '*.cpp'))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware))
@@ -106,7 +113,7 @@ all: $(PROGRAMS) ## set up what is missing and build the programs
 campaign: all ## run the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
-bench: $(BUILD)/bench ## measure the CPU time of a control cycle and of the baseline computation
+bench: $(BUILD)/bench ## measure the CPU time of a hot step and of the baseline computation
 	@$(BUILD)/bench
 
 figures: all ## draw the figures of all one-arm scenarios with both laws, and the trade-off over the paper's gains
@@ -158,6 +165,9 @@ clean: ## remove what was built; keep the virtual environment, runs and figures
 help: ## print this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z0-9-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' Makefile
+	@printf '\nScenes (SCENARIO=NAME)\n'
+	@awk -F '"' '/^title:/ {name = FILENAME; sub(".*/", "", name); sub(".yaml", "", name); printf "  %-17s %s\n", name, $$2}' \
+	  host/scenarios/*.yaml
 
 .PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
 
@@ -202,7 +212,7 @@ $(WIRE): $(LCM_TYPES) | $(READY)
 	@touch $@
 
 # Changes when the flags do: then everything is compiled again.
-$(BUILD)/.flags: always | $(READY)
+$(BUILD)/.flags: $(if $(COUNTING),,always) | $(READY)
 	@mkdir -p $(@D)
 	@echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' | cmp -s - $@ || echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' >$@
 
@@ -211,12 +221,12 @@ $(BUILD)/obj/precompiled.h: host/setup/precompiled.h | $(READY)
 	@cp $< $@
 
 $(BUILD)/obj/precompiled.h.gch: $(BUILD)/obj/precompiled.h $(BUILD)/.flags
-	@echo "c++ host/setup/precompiled.h"
+	$(call progress,host/setup/precompiled.h)
 	@$(COMPILE) -x c++-header $< -o $@
 
 $(BUILD)/obj/%.o: %.cpp $(WIRE) $(BUILD)/.flags $(HEADERS:=.gch) | $(READY)
 	@mkdir -p $(@D)
-	@echo "c++ $<"
+	$(call progress,$<)
 	@$(COMPILE) $(HEADERS:%=-include %) -MMD -MP -c $< -o $@
 
 # The command line is read once, at the start, and optimising CLI11's templates takes half of this file's compile time:

@@ -6,6 +6,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_rad = 1e-9;
+constexpr double kLeastBraking = 0.5;  // share of the acceleration limit; with 0.2 tests/loop/braking touches more
 
 /// The value of smaller magnitude, or 0 where the signs differ.
 double minmod(double a, double b) {
@@ -13,10 +14,15 @@ double minmod(double a, double b) {
   return std::abs(a) < std::abs(b) ? a : b;
 }
 
+/// The tolerated following error of a joint, rad; for a prismatic joint m.
+double following_error(const Model& model, int joint) {
+  return model.settings.following_error_rad * model.arm.joint_scale[joint];
+}
+
 /// Part of a joint's following error that the command has to close, rad: the error beyond half the tolerance, so that a
 /// command that can catch up is never held back by the tolerance itself; the whole error beyond the tolerance.
 double error_to_close_rad(const Model& model, const CommandStream& stream, const ArmState& arm, int joint) {
-  const double tolerance_rad = model.settings.following_error_rad, granted_rad = 0.5 * tolerance_rad;
+  const double tolerance_rad = following_error(model, joint), granted_rad = 0.5 * tolerance_rad;
   const double error_rad = arm.position_rad[joint] - stream.position_rad[joint];
   if (std::abs(error_rad) > tolerance_rad) return error_rad;
   return error_rad - std::clamp(error_rad, -granted_rad, granted_rad);
@@ -86,8 +92,8 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
     const double velocity_radps = stream.velocity_radps[i];
     position_rad[i] += (commanded_rate(model, mode, stream, arm, i, velocity_radps) - velocity_radps) * period_s;
     // The command stays within the following error of the arm: an arm that is held in place stops it.
-    const double behind_rad = arm.position_rad[i] - model.settings.following_error_rad;
-    const double ahead_rad = arm.position_rad[i] + model.settings.following_error_rad;
+    const double behind_rad = arm.position_rad[i] - following_error(model, i);
+    const double ahead_rad = arm.position_rad[i] + following_error(model, i);
     limits.lower_rad[i] = std::max(limits.lower_rad[i], std::min(behind_rad, position_rad[i]));
     limits.upper_rad[i] = std::min(limits.upper_rad[i], std::max(ahead_rad, position_rad[i]));
   }
@@ -95,10 +101,24 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
                         stream.velocity_radps, period_s);
 }
 
+VelocityRange braking_range(const Model& model, const VelocityRange& range, CommandStream& stream) {
+  const double period_s = model.settings.period_s();
+  const JointLimits& limits = model.arm.limits;
+  const JointVector& scale = model.arm.joint_scale;
+  JointVector& bound_radps = stream.braking_radps;
+  if (bound_radps.size() == 0)
+    bound_radps =
+        limits.velocity_radps.cwiseMin(scale * stream.velocity_radps.cwiseQuotient(scale).cwiseAbs().maxCoeff());
+  bound_radps = (bound_radps - kLeastBraking * period_s * limits.acceleration_radps2).cwiseMax(0.0);
+  const JointVector fastest = brake(limits, stream.velocity_radps, period_s);
+  return {fastest.cwiseMin(range.lower_radps.cwiseMax(-bound_radps)),
+          fastest.cwiseMax(range.upper_radps.cwiseMin(bound_radps))};
+}
+
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting) {
   const double period_s = model.settings.period_s();
-  if (moves(mode))
+  if (velocity_radps.allFinite())
     limiting |= apply_limits(model.arm.limits, range, stream.velocity_radps, period_s, velocity_radps);
   else
     velocity_radps = brake(model.arm.limits, stream.velocity_radps, period_s);

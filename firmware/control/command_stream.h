@@ -15,7 +15,8 @@ namespace sidestep {
 ///
 /// Catching up. The commanded position normally moves with the commanded velocity. Where the arm lags behind or was
 /// pushed, the commanded position also moves toward the measured one. Per joint, with the error
-/// e = measured - commanded position and F = Settings::following_error_rad, the part of e to be closed is
+/// e = measured - commanded position and F = Settings::following_error_rad (times Arm::joint_scale), the part of e to
+/// be closed is
 ///   0               for |e| <= F/2
 ///   |e| - F/2       for F/2 < |e| <= F
 ///   |e|             for |e| > F
@@ -31,6 +32,7 @@ struct CommandStream {
   JointVector position_rad;      ///< last commanded
   JointVector velocity_radps;    ///< last commanded
   JointVector rate_radps;        ///< rate of the last commanded position: velocity plus correction
+  JointVector braking_radps;     ///< bound of each joint's speed in braking_range(); size 0 outside of it
   double stopped_s = -HUGE_VAL;  ///< when the driver last stopped the arm because cycles paused
 
   /// No stream runs, or the last command was at rest.
@@ -52,8 +54,14 @@ void start_stream(const Model& model, const ArmState& arm, const JointVector& ar
 /// the measured position. So the command of an arm that is held in place comes to rest.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
-/// The output gate: limits the velocity to the range, or brakes in modes that do not move, and integrates it to the
-/// commanded position. Stores the command in the stream and sets the Limiting bits of the limits that acted.
+/// The part of next_range() in which the arm comes to rest within bounded time. The bound of every joint's speed starts
+/// at the speed of the fastest joint and falls with half the joint's acceleration limit. Within the bound a joint
+/// may also brake late, speed up or reverse, so that the shield can lead the arm past an obstacle while it stops: if
+/// every joint braked as fast as it can, the arm could swing into one. Updates stream.braking_radps.
+VelocityRange braking_range(const Model& model, const VelocityRange& range, CommandStream& stream);
+
+/// The output gate: limits the velocity to the range, brakes if it is not finite, and integrates it to the commanded
+/// position. Stores the command in the stream and sets the Limiting bits of the limits that acted.
 Command gate(const Model& model, Mode mode, const ArmState& arm, const VelocityRange& range, JointVector velocity_radps,
              CommandStream& stream, int& limiting);
 

@@ -12,16 +12,18 @@
 namespace sidestep {
 namespace {
 
-/// The joint velocity that the law computes; zero unless tracking.
+/// The joint velocity that the law computes; zero unless tracking. In HOLD only a retreat is followed, because other
+/// guides end at a target.
 NominalCommand evaluate_law(const Model& model, const LawInput& input, const State& state, const Guide* guide,
                             double now_s) {
-  if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const Settings& settings = model.settings;
+  const bool retreats = guide && guide->foresight_status == ForesightStatus::kWaiting;
+  if (state.supervision.mode == Mode::kHold && retreats) return guided_law(settings.sidestep, input, *guide, now_s);
+  if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
   if (guide) return guided_law(settings.sidestep, input, *guide, now_s);
-  return sidestep_law(settings.sidestep, input,
-                      away_from_limits(settings.sidestep, model.arm.limits, input.position_rad));
+  return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, model.arm, input.position_rad));
 }
 
 /// Weight of the comfort tier, s2/m2. Far from the target a detour costs little, so comfort weighs much; at the target
@@ -34,23 +36,24 @@ double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode 
          std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
 }
 
-/// The safe joint velocity; the nominal one where the shield is off or the mode does not move. Updates the evasion and
-/// the Limiting bits.
+/// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion, the
+/// Limiting bits and the nearest links.
 JointVector apply_shield(const Model& model, const LawInput& input, const VelocityRange& range,
-                         const JointVector& nominal_radps, bool guided, State& state, int& limiting) {
+                         const JointVector& nominal_radps, double comfort, State& state, Report& report) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
-  if (!settings.shield.enabled || !moves(mode)) return nominal_radps;
-  const ShieldInput shield_input{model.arm,           input.poses,
-                                 input.position_rad,  state.stream.velocity_radps,
-                                 input.clearance,     input.obstacles,
-                                 model.self_pairs,    state.evasion_radps,
-                                 settings.period_s(), comfort_weight(settings.shield, input, mode, guided)};
+  const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
+  if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
+  const ShieldInput shield_input{model.arm,           input.poses,     input.position_rad, state.stream.velocity_radps,
+                                 input.clearance,     input.obstacles, model.self_pairs,   state.evasion_radps,
+                                 settings.period_s(), comfort};
   const VelocityRange sustainable =
       sustainable_range(model.arm.limits, input.position_rad, input.position_rad, settings.period_s());
   const ShieldResult safe =
       shield(settings.shield, shield_input, sustainable, range, input.tool_jacobian, nominal_radps);
-  if (safe.failed) limiting |= kLimitingShieldFailed;
+  if (safe.failed) report.limiting |= kLimitingShieldFailed;
+  if (safe.links_limit) report.limiting |= kLimitingSelf;
+  report.nearest_links = safe.nearest_links;
   state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
   return safe.velocity_radps;
 }
@@ -70,7 +73,7 @@ void report_nominal(const NominalCommand& nominal, const JointVector& safe_radps
 }
 
 void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
-  if (!guide || mode != Mode::kTrack) return;
+  if (!guide || !moves(mode)) return;
   report.foresight_status = guide->foresight_status;
   report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
   if (guide->knots > 0) report.guide = guide;
@@ -82,17 +85,40 @@ void report_scene(const LawInput& input, bool has_target, Report& report) {
   if (has_target) report.target_distance_m = (input.target.position_m - input.poses.tool_position).norm();
   if (!input.obstacles.set && input.obstacles.count() == 0) return;
   const Proximity& nearest = input.clearance.nearest;
-  report.clearance_m = nearest.distance_m;
+  report.clearance_m = nearest.distance_m - input.obstacles.possible_m;
   report.nearest_shape = nearest.shape;
   if (nearest.obstacle >= 0) report.nearest_obstacle = input.obstacles.at(nearest.obstacle).id;
+}
+
+/// The measured arm; the commanded one while a stream runs and the measured one is too old or contradicts the last one.
+ArmState present_arm(const State& state, const InputStatus& status) {
+  const bool measured = status.arm_fresh && state.supervision.mode != Mode::kFault;
+  if (measured || !state.stream.running) return state.arm_monitor.accepted.state;
+  return {state.arm_monitor.accepted.state.utime, state.stream.position_rad, state.stream.velocity_radps};
+}
+
+/// Whether the arm may evade without end: in HOLD and TRACK, and in BRAKE while arm and obstacles are known. Otherwise
+/// it comes to rest within bounded time.
+bool may_evade(const Settings& settings, Mode mode, const InputStatus& status) {
+  if (moves(mode)) return true;
+  return mode == Mode::kBrake && status.arm_fresh && status.obstacles_fresh && settings.shield.enabled;
+}
+
+/// The range of the coming period; `evades`: may_evade().
+VelocityRange range_of(const Model& model, Mode mode, bool evades, const ArmState& arm, CommandStream& stream) {
+  VelocityRange range = next_range(model, mode, stream, arm);
+  if (!evades) return braking_range(model, range, stream);
+  stream.braking_radps = JointVector();
+  return range;
 }
 
 /// From the accepted arm state to its command. There is one.
 void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& monitored, double now_s, StageProbe& probe,
               Result& result) {
   State& next = result.next;
-  const ArmState& arm = next.arm_monitor.accepted.state;
-  const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad);
+  const ArmState arm = present_arm(next, monitored.status);
+  const OtherFrames others = present_other_joints(model, inputs.other_joints, now_s);
+  const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad, others);
   probe.passed(Stage::kMonitor);
 
   const ObstacleView obstacles = view_obstacles(model, inputs.obstacles, now_s);
@@ -107,13 +133,17 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const NominalCommand nominal = evaluate_law(model, input, next, guide, now_s);
   probe.passed(Stage::kLaw);
 
-  const VelocityRange range = next_range(model, next.supervision.mode, next.stream, arm);
+  const Mode& mode = next.supervision.mode;  // latch_not_finite() may still change it
+  const bool evades = may_evade(model.settings, mode, monitored.status);
+  const VelocityRange range = range_of(model, mode, evades, arm, next.stream);
+  // An arm that is asked to stop comes to rest also where an obstacle is nearer than comfort.
+  const bool keeps_comfort = evades && !monitored.status.stop;
+  const double comfort = keeps_comfort ? comfort_weight(model.settings.shield, input, mode, guide != nullptr) : 0.0;
   const JointVector safe_radps =
-      apply_shield(model, input, range, nominal.velocity_radps, guide != nullptr, next, result.report.limiting);
+      apply_shield(model, input, range, nominal.velocity_radps, comfort, next, result.report);
   probe.passed(Stage::kShield);
 
   if (!safe_radps.allFinite()) latch_not_finite(now_s, next);
-  const Mode mode = next.supervision.mode;
   result.command = gate(model, mode, arm, range, safe_radps, next.stream, result.report.limiting);
   next.stream.running = stream_continues(next.stream, mode, monitored);
   next.planned = {mode == Mode::kTrack, nominal.tool_velocity_mps};

@@ -4,6 +4,7 @@
 
 #include "firmware/control/command_stream.h"
 #include "firmware/control/input_monitor.h"
+#include "firmware/control/shield/shield.h"
 #include "firmware/control/stages.h"
 #include "firmware/control/supervisor.h"
 #include "firmware/control/types/inputs.h"
@@ -37,6 +38,7 @@ struct Report {
   double clearance_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN while no obstacle is known
   int32_t nearest_obstacle = -1;                                        ///< its id
   int nearest_shape = -1;                                               ///< index into Arm::shapes
+  NearestLinks nearest_links;                                           ///< none with the shield off or while waiting
   double beta = 0.0;
   double damping = 0.0;
   double shield_correction_radps = 0.0;  ///< |safe - nominal|

@@ -12,8 +12,15 @@ ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obsta
   const double by_speed_m = age_s * settings.obstacle_speed_bound_mps;
   const double by_acceleration_m = std::min(by_speed_m, 0.5 * trust.acceleration_bound_mps2 * age_s * age_s);
   const bool fresh = obstacles.fresh(now_s, settings.timeouts.obstacles_s);
-  return {obstacles.message, age_s, trust.uncertainty_m + (fresh ? by_acceleration_m : by_speed_m),
-          &model.surroundings};
+  return {obstacles.message, age_s, trust.uncertainty_m + by_acceleration_m, &model.surroundings,
+          fresh ? 0.0 : by_speed_m - by_acceleration_m};
+}
+
+OtherFrames present_other_joints(const Model& model, const Latest<OtherJoints>& latest, double now_s) {
+  if (!latest.message) return model.arm.other_frames;
+  OtherFrames frames = place_other_joints(model.arm, *latest.message);
+  if (!latest.fresh(now_s, model.settings.timeouts.obstacles_s)) frames.velocity.fill(0.0);
+  return frames;
 }
 
 Target extrapolated(const Target& target, double dt_s) {

@@ -8,11 +8,14 @@
 namespace sidestep {
 
 /// The newest obstacle set, its age and its growth, together with the surroundings. With the acceleration bound a, the
-/// speed bound v and the age t (including the latency), the obstacles of the set grow by the position uncertainty plus
-///   while the set is fresh   min(1/2 a t^2, v t)
-///   after its timeout        v t
-/// Surroundings do not grow.
+/// speed bound v and the age t (including the latency), the obstacles of the set grow by the position uncertainty +
+/// min(1/2 a t^2, v t). After its timeout they may be anywhere within the uncertainty + v t; the rest of that is the
+/// view's possible_m. Surroundings do not grow.
 ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s);
+
+/// Where the joints outside the chain are: at the positions of the newest message, however old, else at
+/// Arm::other_positions. Their velocities are 0 once the message is older than timeouts.obstacles_s.
+OtherFrames present_other_joints(const Model& model, const Latest<OtherJoints>& latest, double now_s);
 
 /// The target dt_s later, at its own linear and angular velocity.
 Target extrapolated(const Target& target, double dt_s);

@@ -13,11 +13,12 @@ Verdict rejected(const char* reason) {
 
 }  // namespace
 
-InputGate::InputGate(int joints, const Settings& settings, InputSource source)
-    : joints_(joints),
+InputGate::InputGate(const Arm& arm, const Settings& settings, InputSource source)
+    : joints_(arm.joints),
       timeouts_(settings.timeouts),
       source_(source),
-      memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s) {}
+      memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s),
+      other_joints_(arm, settings.timeouts.obstacles_s) {}
 
 Verdict InputGate::accept(ArmState& arm, double now_s) {
   if (!plausible(arm, joints_)) return rejected("arm state with impossible values");
@@ -30,6 +31,13 @@ Verdict InputGate::accept(Target& target, double now_s) {
   if (!sanitize(target)) return rejected("target with impossible values");
   if (!is_ordered()) return kAccepted;
   return {target_order_.accept(target.utime, now_s, timeouts_.target_s), nullptr};
+}
+
+Verdict InputGate::accept(OtherJoints& joints, double now_s) {
+  if (!plausible(joints)) return rejected("other joints with impossible values");
+  if (is_ordered() && !other_joints_order_.accept(joints.utime, now_s, timeouts_.obstacles_s)) return {};
+  other_joints_.complete(joints);
+  return kAccepted;
 }
 
 Verdict InputGate::accept(ObstacleSet& obstacles, int64_t utime, double now_s) {

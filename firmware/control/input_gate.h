@@ -2,6 +2,7 @@
 
 #include "firmware/control/message_order.h"
 #include "firmware/control/obstacle_memory.h"
+#include "firmware/control/other_joint_memory.h"
 #include "firmware/control/types/inputs.h"
 #include "firmware/control/types/settings.h"
 
@@ -29,13 +30,15 @@ struct Verdict {
 /// not throw and does not allocate. Large: lives on the heap.
 class InputGate {
  public:
-  InputGate(int joints, const Settings& settings, InputSource source);
+  InputGate(const Arm& arm, const Settings& settings, InputSource source);
 
   /// Each may change the value: fields that do not apply become neutral, remembered obstacles are added. A value that
   /// was not accepted is not to be used. now_s: local time of receipt.
   Verdict accept(ArmState& arm, double now_s);
   Verdict accept(Target& target, double now_s);
   Verdict accept(ObstacleSet& obstacles, int64_t utime, double now_s);
+  /// Completes the positions of the named joints by the last ones of the others, and adds velocities.
+  Verdict accept(OtherJoints& joints, double now_s);
 
  private:
   bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
@@ -43,8 +46,9 @@ class InputGate {
   int joints_;
   Timeouts timeouts_;
   InputSource source_;
-  MessageOrder arm_order_, target_order_, obstacles_order_;
+  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_;
   ObstacleMemory memory_;
+  OtherJointMemory other_joints_;
 };
 
 }  // namespace sidestep

@@ -8,9 +8,9 @@
 namespace sidestep {
 namespace {
 
-constexpr int kMaxSkippedCycles = 3;  // in a row; a single late wake-up skips one or two
-constexpr double kArmWaits_s = 0.05;  // an arm without commands for longer stops on its own (the plant's contract)
-constexpr double kSensorNoise_rad = 1e-3;
+constexpr int kMaxSkippedCycles = 3;       // in a row; a single late wake-up skips one or two
+constexpr double kArmWaits_s = 0.05;       // an arm without commands for longer stops on its own (the plant's contract)
+constexpr double kSensorNoise_rad = 1e-3;  // 1 mrad, or 1 mm
 constexpr double kRounding_s = 1e-9;
 
 /// Whether the arm can have come from this state to the other within dt_s and one period.

@@ -44,7 +44,7 @@ struct MonitorResult {
 
 /// Compares the ages of the inputs with their timeouts and the arm state with the ones accepted before. One arm state
 /// is within reach of another if no joint has moved farther than its velocity limit allows in the elapsed time plus one
-/// period, plus 1 mrad of sensor noise.
+/// period, plus 1 mrad (1 mm) of sensor noise.
 ///
 /// consistent_since_s starts anew when a gap exceeds timeouts.arm_state_lost_s, when the utime does not advance, and
 /// when a state is out of reach of the last accepted one. This alone does not stop a moving arm.

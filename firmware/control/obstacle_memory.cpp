@@ -31,7 +31,7 @@ bool has_shrunk(const Obstacle& before, const Obstacle& now) {
   return before.shape != now.shape || half_length_m(before) > half_length_m(now) + kShrink_m ||
          before.capsule.radius_m > now.capsule.radius_m + kShrink_m ||
          before.half_width_m.norm() > now.half_width_m.norm() + kShrink_m ||
-         before.half_height_m > now.half_height_m + kShrink_m;
+         before.half_thickness_m > now.half_thickness_m + kShrink_m;
 }
 
 /// The speed of the fastest point of the axis.
@@ -70,20 +70,21 @@ void ObstacleMemory::remember_change(RememberedObstacle before, const Obstacle& 
 }
 
 void ObstacleMemory::remember(const RememberedObstacle& changed) {
+  if (!changed_.is_full()) return changed_.add(changed);
   changed_[next_change_] = changed;
-  next_change_ = (next_change_ + 1) % kMaxChanges;
+  next_change_ = (next_change_ + 1) % kMaxObstacles;
 }
 
 /// Merges three lists sorted by id: the previous set, the new set and the vanished obstacles. Obstacles only in the
 /// previous set vanish; obstacles in both may have jumped or shrunk; vanished ones that are reported again are dropped.
 void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double now_s) {
-  const Vanished& were_vanished = vanished_[current_];
-  Vanished& vanished = vanished_[1 - current_];
-  vanished.count = 0;
+  const Remembered& were_vanished = vanished_[current_];
+  Remembered& vanished = vanished_[1 - current_];
+  vanished.clear();
   int b = 0, n = 0, g = 0;
   const auto keep_vanished_below = [&](int64_t id) {
-    for (; g < were_vanished.count && were_vanished.obstacles[g].obstacle.id < id; ++g)
-      if (is_valid(were_vanished.obstacles[g], now_s)) vanished.add(were_vanished.obstacles[g]);
+    for (; g < were_vanished.size() && were_vanished[g].obstacle.id < id; ++g)
+      if (is_valid(were_vanished[g], now_s)) keep(were_vanished[g], vanished);
   };
   while (b < before_count_ || n < set.count) {
     const int64_t none = int64_t{std::numeric_limits<int32_t>::max()} + 1;
@@ -91,11 +92,10 @@ void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double no
     const int64_t id_now = n < set.count ? set.obstacles[order_[n]].id : none;
     keep_vanished_below(std::min(id_before, id_now));
     if (id_before < id_now) {
-      vanished.add({before_[b++], before_s_});
+      keep({before_[b++], before_s_}, vanished);
     } else if (id_now < id_before) {
-      if (g < were_vanished.count && were_vanished.obstacles[g].obstacle.id == id_now) {  // reported again
-        if (has_shrunk(were_vanished.obstacles[g].obstacle, set.obstacles[order_[n]]))
-          remember(were_vanished.obstacles[g]);
+      if (g < were_vanished.size() && were_vanished[g].obstacle.id == id_now) {  // reported again
+        if (has_shrunk(were_vanished[g].obstacle, set.obstacles[order_[n]])) remember(were_vanished[g]);
         ++g;
       }
       ++n;
@@ -110,22 +110,22 @@ void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double no
 
 void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double now_s) {
   sort(set);
-  const Vanished& were_vanished = vanished_[current_];
-  Vanished& vanished = vanished_[1 - current_];
-  vanished.count = 0;
+  const Remembered& were_vanished = vanished_[current_];
+  Remembered& vanished = vanished_[1 - current_];
+  vanished.clear();
   int b = 0, g = 0;
   for (int n = 0; n < set.count; ++n) {
     const RememberedObstacle late{set.obstacles[order_[n]], now_s};
     const int32_t id = late.obstacle.id;
-    for (; g < were_vanished.count && were_vanished.obstacles[g].obstacle.id <= id; ++g)
-      if (were_vanished.obstacles[g].obstacle.id < id) vanished.add(were_vanished.obstacles[g]);
+    for (; g < were_vanished.size() && were_vanished[g].obstacle.id <= id; ++g)
+      if (were_vanished[g].obstacle.id < id) keep(were_vanished[g], vanished);
     while (b < before_count_ && before_[b].id < id) ++b;
     if (b == before_count_ || before_[b].id > id)
-      vanished.add(late);
+      keep(late, vanished);
     else
       remember_change(late, before_[b], late_s);
   }
-  while (g < were_vanished.count) vanished.add(were_vanished.obstacles[g++]);
+  while (g < were_vanished.size()) keep(were_vanished[g++], vanished);
   current_ = 1 - current_;
 }
 
@@ -145,7 +145,7 @@ void ObstacleMemory::add_remembered(ObstacleSet& set, double elapsed_s, double n
 
   set.remembered = 0;
   for (const RememberedObstacle& changed : changed_) append(changed, now_s, set);
-  for (int i = 0; i < vanished_[current_].count; ++i) append(vanished_[current_].obstacles[i], now_s, set);
+  for (const RememberedObstacle& vanished : vanished_[current_]) append(vanished, now_s, set);
 }
 
 }  // namespace sidestep

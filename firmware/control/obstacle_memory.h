@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/base/bounded_list.h"
 #include "firmware/model/obstacle.h"
 
 namespace sidestep {
@@ -14,7 +15,7 @@ namespace sidestep {
 ///   position, at rest, besides the reported one.
 /// - A shrink. If a radius or half an edge of an obstacle has become smaller by more than 1 cm, or its shape is another
 ///   one, the sender may see only a part of it. Then a copy of the old size moves on with its last velocity, besides
-///   the reported one. The newest 64 jumps and shrinks are kept.
+///   the reported one. The newest kMaxObstacles jumps and shrinks are kept.
 /// - A vanished obstacle. If an id is no longer reported, the sender may have lost sight of it, or two senders on one
 ///   channel alternate with their own obstacles. The obstacle moves on with its last velocity, until it is reported
 ///   again or coast_s is over.
@@ -45,17 +46,12 @@ class ObstacleMemory {
     Obstacle obstacle;
     double since_s = -HUGE_VAL;  ///< time of its last report
   };
-  static constexpr int kMaxChanges = 64;
 
-  /// Obstacles that are no longer reported, sorted by id.
-  struct Vanished {
-    std::array<RememberedObstacle, kMaxObstacles> obstacles;
-    int count = 0;
+  using Remembered = BoundedList<RememberedObstacle, kMaxObstacles>;
 
-    void add(const RememberedObstacle& obstacle) {
-      if (count < kMaxObstacles) obstacles[count++] = obstacle;
-    }
-  };
+  static void keep(const RememberedObstacle& obstacle, Remembered& list) {
+    if (!list.is_full()) list.add(obstacle);
+  }
 
   bool is_valid(const RememberedObstacle& remembered, double now_s) const;
   void sort(const ObstacleSet& set);
@@ -70,11 +66,11 @@ class ObstacleMemory {
   int before_count_ = 0;
   double before_s_ = -HUGE_VAL;
   bool any_set_ = false;
-  std::array<int, kMaxObstacles> order_;                 ///< indices of the new set, sorted by id
-  std::array<RememberedObstacle, kMaxChanges> changed_;  ///< jumped or shrunk
-  int next_change_ = 0;
-  Vanished vanished_[2];  ///< two buffers: the current list and the next one
-  int current_ = 0;       ///< index of the current list
+  std::array<int, kMaxObstacles> order_;  ///< indices of the new set, sorted by id
+  Remembered changed_;                    ///< jumped or shrunk
+  int next_change_ = 0;                   ///< the place to overwrite once the list is full
+  Remembered vanished_[2];  ///< no longer reported, sorted by id. Two buffers: the current list and the next one
+  int current_ = 0;         ///< index of the current list
 };
 
 }  // namespace sidestep

@@ -13,24 +13,28 @@ Vector3 clipped(const Vector3& v, double largest) {
   return norm > largest ? Vector3(v * (largest / norm)) : v;
 }
 
-/// The preference: J* (x - J p) + p is p in the null space and x in the task.
+/// The preference: S (J S)* (x - J p) + p is p in the null space and x in the task. S = diag(joint_scale).
 template <int rows>
-void follow(const SidestepGains& gains, const TaskJacobian& jacobian, const TaskVector& x,
-            const JointVector& preferred_radps, NominalCommand& nominal) {
-  const DampedInverse<rows> inverse(gains.lambda_0, gains.sigma_0, jacobian);
+void follow(const SidestepGains& gains, const JointVector& joint_scale, const TaskJacobian& jacobian,
+            const TaskVector& x, const JointVector& preferred_radps, NominalCommand& nominal) {
+  TaskJacobian scaled = jacobian;
+  for (Eigen::Index i = 0; i < scaled.cols(); ++i) scaled.col(i) *= joint_scale[i];
+  const DampedInverse<rows> inverse(gains.lambda_0, gains.sigma_0, scaled);
   nominal.damping = inverse.lambda();
-  nominal.velocity_radps = preferred_radps + inverse * (x - jacobian.lazyProduct(preferred_radps));
+  nominal.velocity_radps =
+      preferred_radps + joint_scale.cwiseProduct(inverse * (x - jacobian.lazyProduct(preferred_radps)));
 }
 
 }  // namespace
 
-JointVector away_from_limits(const SidestepGains& gains, const JointLimits& limits, const JointVector& q_rad) {
+JointVector away_from_limits(const SidestepGains& gains, const Arm& arm, const JointVector& q_rad) {
+  const JointLimits& limits = arm.limits;
   JointVector away_radps(q_rad.size());
   for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
     const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
     const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
     const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
-    away_radps[i] = -gains.k_posture_per_s * share * share * share;
+    away_radps[i] = -gains.k_posture_per_s * arm.joint_scale[i] * share * share * share;
   }
   return away_radps;
 }
@@ -52,9 +56,9 @@ NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, c
   }
 
   if (rows == 6)
-    follow<6>(gains, jacobian, x, preferred_radps, nominal);
+    follow<6>(gains, input.arm.joint_scale, jacobian, x, preferred_radps, nominal);
   else
-    follow<3>(gains, jacobian, x, preferred_radps, nominal);
+    follow<3>(gains, input.arm.joint_scale, jacobian, x, preferred_radps, nominal);
   return nominal;
 }
 

@@ -28,7 +28,7 @@ struct Supervision {
   const char* message = "starting";
 };
 
-/// HOLD and TRACK: law and shield choose the command. In all other modes the command brakes or rests.
+/// HOLD and TRACK: the arm follows the law, or rests where there is no target. In all other modes it stops.
 inline bool moves(Mode mode) {
   return mode == Mode::kHold || mode == Mode::kTrack;
 }
@@ -47,8 +47,10 @@ inline bool moves(Mode mode) {
 ///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///
-/// HOLD slows to rest and keeps avoiding obstacles. BRAKE slows every joint at its acceleration limit. It ends as soon
-/// as its cause has ended.
+/// HOLD slows to rest and keeps avoiding obstacles. So does BRAKE while arm state and obstacles are fresh; after a stop
+/// request without comfort, so that it comes to rest. Otherwise BRAKE, like FAULT, brings every joint to rest within
+/// bounded time (braking_range() in command_stream.h): the shield then takes the commanded arm for one that is not
+/// measured, and the last obstacle set, extrapolated. BRAKE ends as soon as its cause has ended.
 Supervision next_mode(const Supervision& last, const InputStatus& status);
 
 }  // namespace sidestep

@@ -40,9 +40,16 @@ bool plausible(const Obstacle& obstacle) {
   const Capsule& capsule = obstacle.capsule;
   return within(capsule.start, kLargestLength_m) && within(capsule.end, kLargestLength_m) && capsule.radius_m >= 0.0 &&
          capsule.radius_m <= kLargestLength_m && within(obstacle.half_width_m, kLargestLength_m) &&
-         obstacle.half_height_m >= 0.0 && obstacle.half_height_m <= kLargestLength_m &&
+         obstacle.half_thickness_m >= 0.0 && obstacle.half_thickness_m <= kLargestLength_m &&
          within(obstacle.velocity_mps, kLargestSpeed_mps) &&
-         within(obstacle.angular_velocity_radps, kLargestRate_radps);
+         within(obstacle.angular_velocity_radps, kLargestRate_radps) &&
+         (obstacle.kind == Kind::kThing || obstacle.kind == Kind::kPerson);
+}
+
+bool plausible(const OtherJoints& joints) {
+  for (size_t j = 0; j < joints.position.size(); ++j)
+    if (joints.named[j] && !(std::abs(joints.position[j]) <= kLargestJoint_rad)) return false;
+  return true;
 }
 
 bool sanitize(Target& target) {
@@ -68,6 +75,7 @@ Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion&
   if (size_m.minCoeff() < 0.0 || !is_unit(orientation)) return invalid;
   const Matrix3 rotation = orientation.normalized().toRotationMatrix();
   if (shape == Shape::kCapsule) return capsule_obstacle(centre, rotation, size_m[0], size_m[1]);
+  if (shape == Shape::kCylinder) return cylinder_obstacle(centre, rotation, size_m[0], size_m[1]);
   return shape == Shape::kBox ? box_obstacle(centre, rotation, size_m) : invalid;
 }
 

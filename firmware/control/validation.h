@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/control/types/messages.h"
+#include "firmware/model/other_joints.h"
 
 namespace sidestep {
 
@@ -10,6 +11,7 @@ namespace sidestep {
 bool plausible(const ArmState& state, int joints);
 bool plausible(const Target& target);
 bool plausible(const Obstacle& obstacle);
+bool plausible(const OtherJoints& joints);
 
 /// Each returns false for an implausible value. Otherwise fields without meaning get neutral values: the orientation of
 /// a target that tracks none, the angular velocity of a sphere.

@@ -8,6 +8,8 @@ constexpr int kAssessEvery_calls = 5;
 constexpr double kWorthAChange_s = 0.5;  // of cost; smaller differences are no reason to change the guide
 constexpr double kGoodCost_s = 4.0;
 constexpr int kSearchesUntilWaiting = 50;
+constexpr int kSearchesAfterBad = 20;
+constexpr int kTrustedInARow = 4;
 
 /// Whether a better guide need not be searched.
 bool is_good(const Forecast& forecast) {
@@ -16,44 +18,61 @@ bool is_good(const Forecast& forecast) {
 
 }  // namespace
 
-void Foresight::reset() {
+void Foresight::reset(bool tracking) {
+  tracking_ = tracking;
+  expectation_.clear();
   adopt(Guide{}, Forecast{});
   candidate_ = Guide{};
   planner_.reset();
   calls_ = 0;
+  searches_left_ = 0;
 }
 
 void Foresight::adopt(const Guide& guide, const Forecast& forecast) {
   guide_ = guide;
   expected_ = forecast;
   unsuccessful_searches_ = 0;
+  direct_in_a_row_ = 0;
 }
 
 void Foresight::assess(const Snapshot& now) {
   expected_ = rollout_.run(now, guide_);
   if (guide_.knots > 0) {
     const Forecast direct = rollout_.run(now, Guide{});
-    if (direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s))
-      adopt(Guide{}, direct);
+    direct_in_a_row_ = direct.collides ? 0 : direct_in_a_row_ + 1;
+    const bool is_retreat = guide_.foresight_status == ForesightStatus::kWaiting;
+    const bool is_over = !now.tracking && !direct.collides && now.now_s >= guide_.end_s();
+    const bool is_better =
+        direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s);
+    // A retreat leads out of a danger that forecasts see by turns.
+    const bool is_trusted = !is_retreat || expected_.collides || direct_in_a_row_ >= kTrustedInARow;
+    if (is_over || (is_better && is_trusted)) adopt(Guide{}, direct);
   }
   if (is_good(expected_)) {
     unsuccessful_searches_ = 0;
     candidate_ = Guide{};
     if (guide_.knots == 0) guide_.foresight_status = ForesightStatus::kDirect;
   }
+  expectation_.set(now, expected_);
 }
 
 void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) {
     // Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
     // snapshot to the next.
+    const bool collided = expected_.collides;
     expected_ = rollout_.run(now, guide_);
+    if (collided && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
+      expected_.collides = true;
+      expected_.cost_s += kCollisionCost_s;
+    }
     const Forecast forecast = rollout_.run(now, candidate_);
     if (forecast.cost_s < expected_.cost_s - kWorthAChange_s) adopt(candidate_, forecast);
+    expectation_.set(now, expected_);
     candidate_ = Guide{};
     return;
   }
-  candidate_ = planner_.plan_to_target(now);
+  candidate_ = now.tracking ? planner_.plan_to_target(now) : Guide{};
   if (candidate_.knots > 0) return;
   if (expected_.collides) candidate_ = planner_.plan_retreat(now);
   if (++unsuccessful_searches_ > kSearchesUntilWaiting && guide_.knots == 0 && !expected_.arrives)
@@ -61,12 +80,15 @@ void Foresight::search(const Snapshot& now) {
 }
 
 const Guide& Foresight::update(const Snapshot& now) {
-  if (!now.tracking)
-    reset();
-  else if (calls_++ % kAssessEvery_calls == 0)
+  if (!now.moves || now.tracking != tracking_) reset(now.tracking);
+  if (!now.moves) return guide_;
+  // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
+  if (calls_ > 0 && !is_good(expected_)) searches_left_ = kSearchesAfterBad;
+  if (calls_++ % kAssessEvery_calls != 0) {
+    if (searches_left_ > 0) --searches_left_, search(now);
+  } else if (!is_good(expected_) || !expectation_.holds(now)) {
     assess(now);
-  else if (!is_good(expected_))
-    search(now);
+  }
   return guide_;
 }
 

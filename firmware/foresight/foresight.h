@@ -1,37 +1,46 @@
 #pragma once
 
+#include "firmware/foresight/expectation.h"
 #include "firmware/foresight/planner.h"
 #include "firmware/foresight/rollout.h"
 
 namespace sidestep {
 
 /// Detects by rollouts that the law would not arrive at the target or would collide, and searches for a guide that
-/// arrives. Large: lives on the heap.
+/// arrives. In HOLD, without a target, it detects that the arm at rest would collide, and searches for a retreat.
+/// Large: lives on the heap.
 class Foresight {
  public:
-  explicit Foresight(const Model& model) : model_(model), rollout_(model), planner_(model) {}
+  explicit Foresight(const Model& model) : model_(model), rollout_(model), planner_(model), expectation_(model.arm) {}
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
   /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
   ///
-  /// Every fifth call is an assessment. It runs a rollout with the present guide and one without a guide. The guide is
-  /// dropped if the rollout without it costs at least 0.5 s less, or if the arm does not arrive with it and the rollout
-  /// without it costs no more.
+  /// Every fifth call is an assessment, unless the last forecast is good and the snapshot is as expected then
+  /// (expectation.h). It runs a rollout with the present guide and one without a guide. The guide is dropped if the
+  /// rollout without it costs at least 0.5 s less, or if the arm does not arrive with it and the rollout without it
+  /// costs no more. A retreat that does not collide is dropped only when four such rollouts without it in a row did not
+  /// collide either: forecasts of a narrow escape alternate.
   ///
-  /// The four calls between two assessments do nothing while the last forecast is good. Otherwise they search in turns:
-  /// one call plans a candidate with plan_to_target(), or, if that fails and a collision is predicted, with
-  /// plan_retreat(). The next call runs a rollout with the candidate and one with the present guide (or the law alone).
-  /// A candidate that costs at least 0.5 s less becomes the guide.
+  /// The four calls between two assessments do nothing while the last forecast is good and 20 such calls have passed
+  /// since one was not. Otherwise they search in turns: one call plans a candidate with plan_to_target(), or, if that
+  /// fails and a collision is predicted, with plan_retreat(). The next call runs a rollout with the candidate and one
+  /// with the present guide (or the law alone), which counts as a collision where the forecast before collided. A
+  /// candidate that costs at least 0.5 s less becomes the guide.
   ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
   /// arrive. The law alone then continues.
   ///
-  /// A snapshot that is not tracking resets everything. The same sequence of snapshots gives the same guides.
+  /// In HOLD a forecast is good if the arm does not collide. Only plan_retreat() is called, and the guide is dropped
+  /// after its end as soon as the rollout without it does not collide.
+  ///
+  /// A snapshot of another mode than HOLD and TRACK, and a change between these two, resets everything. The same
+  /// sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
 
  private:
-  void reset();
+  void reset(bool tracking);
   void assess(const Snapshot& now);
   void search(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
@@ -39,10 +48,14 @@ class Foresight {
   const Model& model_;
   Rollout rollout_;
   Planner planner_;
+  bool tracking_ = false;  ///< of the last snapshot
   int64_t calls_ = 0;
+  int searches_left_ = 0;  ///< after a forecast that was not good
   Guide guide_;
   Forecast expected_;              ///< under guide_
+  Expectation expectation_;        ///< of expected_
   Guide candidate_;                ///< a plan that has no rollout yet; no knots: none
+  int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted whose rollout without it did not collide
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 

@@ -33,9 +33,13 @@ bool solve_ik(const Arm& arm, const Target& target, JointVector& q_rad) {
     const LinkPoses poses = forward_kinematics(arm, q_rad);
     const TaskVector error = task_error(poses, target);
     if (is_reached(error)) return true;
-    JointVector change_rad = damped_solve(tool_jacobian(poses, static_cast<int>(error.size())), kDamping, error);
+    TaskJacobian jacobian = tool_jacobian(poses, static_cast<int>(error.size()));
+    for (int i = 0; i < arm.joints; ++i) jacobian.col(i) *= arm.joint_scale[i];
+    JointVector change_rad = damped_solve(jacobian, kDamping, error);  // in units of the scale
     change_rad *= std::min(1.0, kLongestStep_rad / change_rad.cwiseAbs().maxCoeff());
-    q_rad = (q_rad + change_rad).cwiseMax(arm.limits.lower_rad).cwiseMin(arm.limits.upper_rad);
+    q_rad = (q_rad + change_rad.cwiseProduct(arm.joint_scale))
+                .cwiseMax(arm.limits.lower_rad)
+                .cwiseMin(arm.limits.upper_rad);
   }
   return false;
 }

@@ -12,6 +12,7 @@ namespace {
 
 // All constants are tuned on the witnessed campaign.
 constexpr int kTriesPerCall = 6;
+constexpr int kRetreatTriesPerCall = 100;  // a retreat needs no inverse kinematics and mostly fails at an early sample
 constexpr double kSampleEvery_s = 0.06;
 constexpr double kLimitShare = 0.9;  // of the velocity and acceleration limits; the rest is left to the shield
 
@@ -29,7 +30,9 @@ constexpr double kLongestPause_s = 2.0;
 constexpr double kDetourShare = 0.3;
 constexpr double kDetour_rad = 1.5;
 
-constexpr double kRetreat_rad = 1.0;  // the range of a retreat around the present configuration per joint
+// The range of a retreat around the present configuration per joint; every other one may lead farther.
+constexpr double kRetreat_rad = 1.0;
+constexpr double kFarRetreat_rad = 2.0;
 
 // A guide ends so much before the horizon, so that the clearance at its end is known for as long.
 constexpr double kStayAtGoal_s = 1.0;
@@ -38,20 +41,23 @@ constexpr double kStayAtGoal_s = 1.0;
 constexpr double kStartAllowance_m = 0.005;
 constexpr double kStartPhase_s = 0.5;
 
-/// A position limit; half a turn where a joint has none.
+/// A position limit; half a turn where a joint has none. (A prismatic joint has one.)
 double bounded(double limit_rad, double otherwise_rad) {
   return std::isfinite(limit_rad) ? limit_rad : otherwise_rad;
 }
 
 }  // namespace
 
-/// Uniformly distributed within range_rad of a configuration, per joint, and within the position limits.
+/// Uniformly distributed within range_rad (times Arm::joint_scale) of a configuration, per joint, and within the
+/// position limits.
 JointVector Planner::random_configuration(const JointVector& around_rad, double range_rad) {
   const JointLimits& limits = model_.arm.limits;
   JointVector q_rad = around_rad;
-  for (Eigen::Index i = 0; i < q_rad.size(); ++i)
-    q_rad[i] = random_.uniform(std::max(bounded(limits.lower_rad[i], -M_PI), q_rad[i] - range_rad),
-                               std::min(bounded(limits.upper_rad[i], M_PI), q_rad[i] + range_rad));
+  for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
+    const double range = range_rad * model_.arm.joint_scale[i];
+    q_rad[i] = random_.uniform(std::max(bounded(limits.lower_rad[i], -M_PI), q_rad[i] - range),
+                               std::min(bounded(limits.upper_rad[i], M_PI), q_rad[i] + range));
+  }
   return q_rad;
 }
 
@@ -80,11 +86,14 @@ void Planner::append(Guide& guide, const JointVector& q_rad) const {
 bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const ForesightSettings& settings = model_.settings.foresight;
   const double enough_m = settings.clearance_m;
+  const OtherFrames others = place_other_joints(model_.arm, from.others);
   const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
-    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad), from.nearby.obstacles.data(),
+    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
                            from.nearby.count, after_s, enough_m);
   };
-  const double at_start_m = std::min(enough_m, clearance_at_m(guide.position_rad[0], 0.0) - kStartAllowance_m);
+  const bool retreats = guide.foresight_status == ForesightStatus::kWaiting;
+  const double at_start_m =
+      retreats ? 0.0 : std::min(enough_m, clearance_at_m(guide.position_rad[0], 0.0) - kStartAllowance_m);
   double after_s = 0.0;
   while (after_s <= settings.horizon_s) {
     const double clear_m = clearance_at_m(point_of(guide, from.now_s + after_s).position_rad, after_s);
@@ -116,9 +125,10 @@ Guide Planner::plan_to_target(const Snapshot& from) {
 }
 
 Guide Planner::plan_retreat(const Snapshot& from) {
-  for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
+  for (int attempt = 0; attempt < kRetreatTriesPerCall; ++attempt) {
     Guide guide = start_of(from, ForesightStatus::kWaiting);
-    append(guide, random_configuration(from.arm.position_rad, kRetreat_rad));
+    const double range_rad = attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad;
+    append(guide, random_configuration(from.arm.position_rad, range_rad));
     if (is_clear(from, guide)) return guide;
   }
   return {};

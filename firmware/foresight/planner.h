@@ -13,7 +13,7 @@ namespace sidestep {
 /// every joint moves with the profile 3u^2 - 2u^3 (types/guide.h), as fast as 90 % of the velocity and acceleration
 /// limits allow. A guide is clear if the clearance of its configurations, sampled every 60 ms up to
 /// foresight.horizon_s, is at least foresight.clearance_m. In the first 0.5 s the limit is min(foresight.clearance_m,
-/// clearance at the start - 5 mm).
+/// clearance at the start - 5 mm), and 0 for a retreat: it may start while an obstacle passes, which the shield evades.
 class Planner {
  public:
   explicit Planner(const Model& model) : model_(model), random_(model.settings.foresight.seed) {}
@@ -26,8 +26,9 @@ class Planner {
   /// ForesightStatus::kGuided; without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
 
-  /// Six tries. The goal configuration is random, each joint within 1 rad of its present position. Returns the first
-  /// guide that is clear up to the horizon, with ForesightStatus::kWaiting; without knots if no try succeeds.
+  /// 100 tries. The goal configuration is random, each joint within 1 rad (0.25 m), in every other try within 2 rad, of
+  /// its present position. Returns the first guide that is clear up to the horizon, with ForesightStatus::kWaiting;
+  /// without knots if no try succeeds.
   Guide plan_retreat(const Snapshot& from);
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "firmware/control/extrapolation.h"
-
+#include "firmware/model/clearance.h"
 #include "firmware/model/prediction.h"
 
 namespace sidestep {
@@ -16,10 +16,18 @@ constexpr double kArrived_m = 0.01;
 constexpr double kArrived_rad = 0.05;
 
 constexpr double kNoArrivalCost_s = 5.0;
-constexpr double kCollisionCost_s = 20.0;
 
-// A rollout is coarse: below this clearance a contact is assumed possible.
-constexpr double kCollisionClearance_m = 0.01;
+// A rollout is coarse: below this share of the hard clearance a contact is assumed possible.
+constexpr double kCollisionShare = 0.5;
+
+// In HOLD a retreat costs nothing, so an arm that is squeezed, though the rollout has no contact, leaves early.
+constexpr double kSqueezedShare = 1.5;
+
+constexpr double kRest_radps = 0.005;  // an arm that is slower rests
+
+bool rests(const Target& target) {
+  return target.velocity_mps.isZero(0.0) && target.angular_velocity_radps.isZero(0.0);
+}
 
 void advance(ObstacleSet& set, double dt_s) {
   for (int i = 0; i < set.count; ++i) set.obstacles[i] = extrapolated(set.obstacles[i], dt_s);
@@ -48,6 +56,27 @@ Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.surroundings.clear();
 }
 
+/// Whether the arm rests and nothing in the rest of the horizon would move it: the guide has ended, the target rests
+/// and no obstacle within reach comes nearer. Away from the target, an obstacle that leaves may also move it.
+bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
+                            double after_s, bool arrives) const {
+  if (arm.velocity_radps.cwiseQuotient(coarse_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
+  if (guide.knots > 0 && from.now_s + after_s < guide.end_s()) return false;
+  if (from.tracking && !rests(predicted_target(from.target, after_s))) return false;
+  const auto moves = [](const Obstacle& obstacle) {
+    return !obstacle.velocity_mps.isZero(0.0) || !obstacle.angular_velocity_radps.isZero(0.0);
+  };
+  if (!arrives)
+    return std::none_of(obstacles_.obstacles.begin(), obstacles_.obstacles.begin() + obstacles_.count, moves);
+  const Reach reach{coarse_.settings.shield.range_m, coarse_.settings.foresight.horizon_s - after_s};
+  const Clearance clearance = measure_clearance(coarse_.arm, poses, {&obstacles_, 0.0, 0.0, nullptr}, reach);
+  const auto comes = [&](const NearPair& pair) {
+    const Vector3& turning_radps = obstacles_.obstacles[pair.now.obstacle].angular_velocity_radps;
+    return pair.approach.time_s > 0.0 || !turning_radps.isZero(0.0);
+  };
+  return std::none_of(clearance.near.begin(), clearance.near.end(), comes);
+}
+
 Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   const double period_s = coarse_.settings.period_s();
   const int cycles = static_cast<int>(coarse_.settings.foresight.horizon_s / period_s);
@@ -55,9 +84,12 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
+  const OtherFrames others = place_other_joints(coarse_.arm, from.others);
   // step() uses only differences of utime.
   arm.utime = state.arm_monitor.accepted.state.utime = state.arm_monitor.before.state.utime = 0;
   Forecast forecast;
+  const double enough_m = (from.tracking ? kCollisionShare : kSqueezedShare) * coarse_.settings.shield.hard_clearance_m;
+  forecast.period_s = period_s;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {
     const double after_s = cycle * period_s, now_s = from.now_s + after_s;
@@ -65,20 +97,27 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     advance(obstacles_, period_s);
     arm.utime += static_cast<int64_t>(period_s * 1e6);
     const int64_t count = state.arm_monitor.count + 1;
-    Inputs inputs{{&arm, now_s, count}, {&target, now_s, count}, {&obstacles_, now_s, count}};
+    Inputs inputs{{&arm, now_s, count}, {}, {&obstacles_, now_s, count}};
+    if (from.tracking) inputs.target = {&target, now_s, count};
+    inputs.other_joints = {&from.others, now_s, count};
     inputs.guide = &guide;
     const Result result = step(coarse_, state, inputs, now_s);
     state = result.next;
     arm.position_rad = result.command.position_rad;
     arm.velocity_radps = result.command.velocity_radps;
 
-    const LinkPoses poses = forward_kinematics(coarse_.arm, arm.position_rad);
-    forecast.arrives = is_at(poses, target);
+    const LinkPoses poses = forward_kinematics(coarse_.arm, arm.position_rad, others);
+    forecast.arrives = !from.tracking || is_at(poses, target);
     if (!forecast.arrives) forecast.cost_s += period_s;
     least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
-                                                period_s, kCollisionClearance_m));
+                                                period_s, enough_m));
+    if (after_s <= kForecastPath_s && !forecast.path_rad.is_full()) forecast.path_rad.add(arm.position_rad);
+    if (stays_at_rest(from, guide, poses, arm, after_s, forecast.arrives)) {
+      if (!forecast.arrives) forecast.cost_s += (cycles - cycle) * period_s;
+      break;
+    }
   }
-  forecast.collides = least_m < kCollisionClearance_m;
+  forecast.collides = least_m < enough_m;
   if (!forecast.arrives) forecast.cost_s += kNoArrivalCost_s;
   if (forecast.collides) forecast.cost_s += kCollisionCost_s;
   return forecast;

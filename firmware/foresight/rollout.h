@@ -1,28 +1,41 @@
 #pragma once
 
+#include "firmware/base/bounded_list.h"
 #include "firmware/foresight/snapshot.h"
 #include "firmware/model/kinematics.h"
 
 namespace sidestep {
 
+constexpr double kForecastPath_s = 0.5;  ///< a forecast keeps the arm's path for so long
+constexpr int kMaxPathPoints = 64;
+
+constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a collision decides
+
 /// The result of a rollout.
 struct Forecast {
-  bool arrives = false;   ///< the tool is at the target at the end
-  bool collides = false;  ///< the clearance falls below 10 mm; a contact is then assumed possible
-  double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + 20 s if it collides
+  bool arrives = false;   ///< the tool is at the target at the end; always true in HOLD
+  bool collides = false;  ///< the clearance falls below half the hard clearance (in HOLD below 1.5 times)
+  double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides
+
+  double period_s = 0.0;                              ///< between two points of the path
+  BoundedList<JointVector, kMaxPathPoints> path_rad;  ///< one period after the snapshot, and so on
 };
 
-/// Simulates the next foresight.horizon_s seconds with the controller's own step() and an ideal arm, which follows each
-/// command exactly. The period is 30 ms, unless the controller's is longer. Obstacles keep their velocities; the target
-/// moves as predicted_target(). About 600 kB: lives on the heap.
+/// Simulates the next foresight.horizon_s seconds, in the mode of the snapshot, with the controller's own step() and an
+/// ideal arm, which follows each command exactly. The period is 30 ms, unless the controller's is longer. Obstacles
+/// keep their velocities; the target moves as predicted_target(). A simulation ends early when the arm rests and
+/// nothing could move it any more. About 600 kB: lives on the heap.
 class Rollout {
  public:
   explicit Rollout(const Model& model);
 
-  /// From a snapshot with tracking = true, under a guide (no knots: the law alone). No allocation.
+  /// From a snapshot with moves = true, under a guide (no knots: the law alone). No allocation.
   Forecast run(const Snapshot& from, const Guide& guide);
 
  private:
+  bool stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
+                     double after_s, bool arrives) const;
+
   Model coarse_;
   ObstacleSet obstacles_;
 };

@@ -14,17 +14,20 @@ struct NearbyObstacles {
 
 /// The input of foresight: the state of one control cycle and the world as that cycle extrapolated it.
 struct Snapshot {
-  bool tracking = false;   ///< the mode is TRACK; if false, the other fields are not valid
+  bool moves = false;      ///< the mode is HOLD or TRACK; if false, the other fields are not valid
+  bool tracking = false;   ///< the mode is TRACK; in HOLD there is no target
   double now_s = 0.0;      ///< of the cycle, on its clock
   State state;             ///< after the cycle
   ArmState arm;            ///< of the cycle
   Target target;           ///< extrapolated to now_s
+  OtherJoints others;      ///< of the cycle; foresight assumes that they rest
   NearbyObstacles nearby;  ///< extrapolated to now_s and grown by their uncertainty
 };
 
 /// Fills `snapshot` from the inputs of a cycle and the state after it. If there are more than kMaxNearbyObstacles
-/// obstacles, the snapshot keeps those that come nearest to the base within foresight.horizon_s. For this the obstacles
-/// are taken as their enclosing balls at constant velocity. Bounded; no allocation.
+/// obstacles, the snapshot keeps those that come nearest to the moving links, as they are now, within
+/// foresight.horizon_s. For this the obstacles are taken as their enclosing balls at constant velocity. Bounded; no
+/// allocation.
 void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot);
 
 }  // namespace sidestep

@@ -16,11 +16,23 @@ static_assert(Controller::kMostJoints == kMaxJoints && Controller::kMostObstacle
 static_assert(static_cast<int>(Controller::Shape::kSphere) == static_cast<int>(Shape::kSphere));
 static_assert(static_cast<int>(Controller::Shape::kCapsule) == static_cast<int>(Shape::kCapsule));
 static_assert(static_cast<int>(Controller::Shape::kBox) == static_cast<int>(Shape::kBox));
+static_assert(static_cast<int>(Controller::Shape::kCylinder) == static_cast<int>(Shape::kCylinder));
 static_assert(static_cast<int>(Controller::Mode::kWait) == static_cast<int>(Mode::kWait));
 static_assert(static_cast<int>(Controller::Mode::kHold) == static_cast<int>(Mode::kHold));
 static_assert(static_cast<int>(Controller::Mode::kTrack) == static_cast<int>(Mode::kTrack));
 static_assert(static_cast<int>(Controller::Mode::kBrake) == static_cast<int>(Mode::kBrake));
 static_assert(static_cast<int>(Controller::Mode::kFault) == static_cast<int>(Mode::kFault));
+static_assert(int{Controller::kFaultNone} == static_cast<int>(Fault::kNone));
+static_assert(int{Controller::kFaultArmStateLost} == static_cast<int>(Fault::kArmStateLost));
+static_assert(int{Controller::kFaultArmStateInconsistent} == static_cast<int>(Fault::kArmStateInconsistent));
+static_assert(int{Controller::kFaultNotFinite} == static_cast<int>(Fault::kNotFinite));
+static_assert(int{Controller::kLimitingVelocity} == int{kLimitingVelocity});
+static_assert(int{Controller::kLimitingAcceleration} == int{kLimitingAcceleration});
+static_assert(int{Controller::kLimitingPosition} == int{kLimitingPosition});
+static_assert(int{Controller::kLimitingTaskSpeed} == int{kLimitingTaskSpeed});
+static_assert(int{Controller::kLimitingShield} == int{kLimitingShield});
+static_assert(int{Controller::kLimitingShieldFailed} == int{kLimitingShieldFailed});
+static_assert(int{Controller::kLimitingSelf} == int{kLimitingSelf});
 
 Vector3 vector(const Controller::Vector& xyz) {
   return Vector3(xyz[0], xyz[1], xyz[2]);
@@ -93,7 +105,7 @@ struct Controller::Inside {
   Inside(Model the_model, Controller::Foresight foresight)
       : model(std::move(the_model)),
         foresight_thread(model, foresight == Foresight::kWithinStep),
-        gate(model.arm.joints, model.settings, InputSource::kCalls) {}
+        gate(model.arm, model.settings, InputSource::kCalls) {}
 
   /// The newest accepted value of a kind, and a draft for the next one.
   template <typename Message>

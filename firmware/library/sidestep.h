@@ -25,7 +25,8 @@ class __attribute__((visibility("default"))) Controller {
 
   using Vector = std::array<double, 3>;            ///< x y z
   using Quaternion = std::array<double, 4>;        ///< w x y z, of length 1
-  using Joints = std::array<double, kMostJoints>;  ///< the first joints() count, from the base on
+  using Joints = std::array<double, kMostJoints>;  ///< the first joints() count, from the base on; rad and
+                                                   ///< rad/s, or m and m/s for a prismatic joint
 
   /// Foresight plans detours out of dead ends: on its own thread, or within step(), which then takes longer but is
   /// deterministic. The configuration can switch it off as well.
@@ -52,13 +53,14 @@ class __attribute__((visibility("default"))) Controller {
   /// Returns false and keeps the previous target when a number is implausible.
   bool set_target(const Target& target, double now_s);
 
-  enum class Shape { kSphere, kCapsule, kBox };
+  enum class Shape { kSphere, kCapsule, kBox, kCylinder };
   struct Obstacle {
     int id = 0;  ///< constant over the life of the obstacle
     Shape shape = Shape::kSphere;
     Vector position_m{};                 ///< centre
     Quaternion orientation{1, 0, 0, 0};  ///< ignored for a sphere
-    Vector size_m{};  ///< sphere {radius}; capsule {radius, distance of cap centres along z}; box {edge, edge, edge}
+    Vector size_m{};  ///< sphere {radius}; along z: capsule {radius, distance of cap centres}, cylinder {radius,
+                      ///< height}; box {edge, edge, edge}
     Vector velocity_mps{};
     Vector angular_velocity_radps{};
   };
@@ -70,14 +72,25 @@ class __attribute__((visibility("default"))) Controller {
     Joints position_rad{};
     Joints velocity_radps{};
   };
-  enum class Mode { kWait, kHold, kTrack, kBrake, kFault };  ///< as in controller_status_t, with fault and limiting
+  // As in controller_status_t:
+  enum class Mode { kWait, kHold, kTrack, kBrake, kFault };
+  enum Fault { kFaultNone = 0, kFaultArmStateLost = 1, kFaultArmStateInconsistent = 2, kFaultNotFinite = 3 };
+  enum Limiting {  ///< bits
+    kLimitingVelocity = 1,
+    kLimitingAcceleration = 2,
+    kLimitingPosition = 4,
+    kLimitingTaskSpeed = 8,
+    kLimitingShield = 16,
+    kLimitingShieldFailed = 2048,
+    kLimitingSelf = 4096,
+  };
   struct Result {
     bool commanding = false;  ///< send the next two to the arm; false while waiting and after a fault
     Joints position_rad{};    ///< at the end of the coming period
     Joints velocity_radps{};  ///< for the coming period
     Mode mode = Mode::kWait;
-    int fault = 0;
-    int limiting = 0;
+    int fault = kFaultNone;
+    int limiting = 0;              ///< bit set of Limiting: what limits the command in this cycle
     const char* message = "";      ///< the reason for the mode, static text
     double target_distance_m = 0;  ///< NaN without a target
     double clearance_m = 0;        ///< surface to surface; NaN before the first obstacle set

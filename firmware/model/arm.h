@@ -1,16 +1,20 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <kdl/chain.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "firmware/model/capsule.h"
+#include "firmware/model/convex_solid.h"
+#include "firmware/model/other_joints.h"
 #include "firmware/model/types.h"
 
 namespace sidestep {
 
-/// Per joint, n x 1. Position limits are infinite for a continuous joint.
+/// Per joint, n x 1: rad, rad/s and rad/s2, or m, m/s and m/s2 for a prismatic joint. That holds for every joint vector
+/// of the project, whatever unit its name ends with. Position limits are infinite for a continuous joint.
 struct JointLimits {
   JointVector lower_rad;
   JointVector upper_rad;
@@ -18,30 +22,53 @@ struct JointLimits {
   JointVector acceleration_radps2;
 };
 
-/// A capsule that encloses one collision shape of the URDF, or one slice of a mesh.
+/// One collision shape of the URDF, or one convex piece of a mesh, in the frame of its body.
 struct LinkShape {
   std::string link;
   int body;                ///< 0 is the base; body i moves with joints 1 to i
-  Capsule capsule_body;    ///< in the frame of its body
-  double slack_m = 0.0;    ///< largest distance from the surface of a mesh's capsules to the mesh; 0 for other shapes
-  bool below_arm = false;  ///< belongs to the structure that the base link is fixed to, not to the arm
+  Capsule capsule_body;    ///< encloses the shape; cheap tests use it alone. In the frame of its body, or other joint
+  bool below_arm = false;  ///< belongs to the structure that carries the base link, not to the arm
+  int other_joint = -1;    ///< index into Arm::other_joints of the joint that moves it on its body; -1: none
+  bool is_capsule = true;  ///< the shape is that capsule; otherwise it is `solid`
+  ConvexSolid solid = {};  ///< in the same frame as the capsule
+  std::shared_ptr<const Polyhedron> polyhedron = nullptr;  ///< that of `solid`
+  double excess_p95_m = 0.0;  ///< 95 % of the surface of a mesh's pieces are less far from the mesh; 0 for other shapes
+  double excess_m = 0.0;      ///< the largest distance
 };
+
+/// Two shapes, as indices into Arm::shapes, that keep clear of each other.
+struct SelfPair {
+  int first, second;
+  double clearance_m;
+};
+
+/// Where joints are compared, this motion of a prismatic joint counts as much as 1 rad of another joint: the lever at
+/// which a joint of an arm typically moves the links behind it. It weighs the joints' motion in the law's damped
+/// inverse and in the shield's programme, and turns settings in rad, rad/s and rad/s2 into m, m/s and m/s2.
+constexpr double kPrismaticScale_m = 0.25;  // a power of two: multiplying by it is exact
 
 /// A serial arm of n joints: the KDL chain from the base link to the tip link, and the same chain reduced to one frame
 /// per joint, which the control cycle uses.
 ///
 /// Body i is joint i's moving link with all links that are rigidly fixed to it. The origin of its frame lies on the
-/// axis of joint i, its z axis along it, so that body(i-1)_from_body(i) = joint_placement[i] * Rz(q_i). Body 0 is the
-/// base.
+/// axis of joint i, its z axis along it, so that body(i-1)_from_body(i) = joint_placement[i] * Rz(q_i), or * Tz(q_i)
+/// for a prismatic joint. Body 0 is the base.
 struct Arm {
   KDL::Chain chain;
   int joints = 0;  ///< n, kMinJoints to kMaxJoints
   std::vector<std::string> joint_names;
+  std::bitset<kMaxJoints> prismatic;  ///< per joint, from 0; the others are revolute or continuous
+  JointVector joint_scale;            ///< n x 1: 1, or kPrismaticScale_m for a prismatic joint
   std::array<Eigen::Isometry3d, kMaxJoints + 1> joint_placement;  ///< of joint i in body i - 1, for i = 1 to n
   Eigen::Isometry3d last_body_from_tool;
   JointLimits limits;
-  std::vector<LinkShape> shapes;     ///< 1 to kMaxShapes
-  std::vector<std::string> remarks;  ///< one sentence per peculiarity of the URDF that is no error
+  std::vector<LinkShape> shapes;         ///< 1 to kMaxShapes
+  std::vector<OtherJoint> other_joints;  ///< at most kMaxOtherJoints, parents first
+  OtherJoints other_positions;           ///< their positions unless a message tells others
+  OtherFrames other_frames;              ///< the frames at these positions
+  std::vector<std::string> remarks;      ///< one sentence per peculiarity of the URDF that is no error
+  std::vector<std::string> warnings;     ///< remarks on what may not be as it seems: joints outside the chain whose
+                                         ///< position nobody gave, limits that look like degrees
 };
 
 }  // namespace sidestep

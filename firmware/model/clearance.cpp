@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/model/link_proximity.h"
 #include "firmware/model/pair_proximity.h"
 
 namespace sidestep {
@@ -43,15 +44,6 @@ struct Links {
   double distance2_m2(const Vector3& p) const { return (p - p.cwiseMax(lower).cwiseMin(upper)).squaredNorm(); }
 };
 
-/// The distance by which pairs are selected: the lesser of the surface distances now and at the closest approach.
-double least_distance_m(const Proximity& now, const ClosestApproach& approach) {
-  return std::min(now.distance_m, approach.distance_m);
-}
-
-double least_distance_m(const NearPair& pair) {
-  return least_distance_m(pair.now, pair.approach);
-}
-
 double square(double x) {
   return x * x;
 }
@@ -60,8 +52,9 @@ double square(double x) {
 class Gatherer {
  public:
   /// clearance.links has been filled.
-  Gatherer(const Arm& arm, const ObstacleView& view, const Reach& reach, Clearance& clearance)
+  Gatherer(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach, Clearance& clearance)
       : arm_(arm),
+        poses_(poses),
         links_(arm, clearance.links),
         view_(view),
         horizon_s_(reach.horizon_s),
@@ -95,10 +88,14 @@ class Gatherer {
       const double closing_m = std::max(0.0, std::min(travel_m, horizon_s_ * -velocity_mps.dot(gap) / distance_m));
       if (distance_m > relevant_axis_distance_m(link, radii_m, closing_m)) continue;
       const Proximity now = proximity_of(link.capsule, radius_m, {centre - gap, centre}, -gap, distance_m);
-      add_pair(s, index, now, velocity_mps, travel_m, [&] {
-        if (closing_m == 0.0) return ClosestApproach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
-        return predict_closest_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
-      });
+      const auto solid = [&] { return ConvexSolid::of(Capsule{centre, centre, radius_m}); };
+      add_pair(
+          s, index, now, solid, [&](const Vector3&) { return velocity_mps; }, travel_m,
+          [&] {
+            if (closing_m == 0.0)
+              return ClosestApproach{0.0, now.distance_m, now.axis_distance_m, now.on_arm, now.normal};
+            return predict_closest_approach(link.capsule, radius_m, centre, velocity_mps, horizon_s_);
+          });
       reach2_m2 = square(relevant_axis_distance_m(radii_m, 0.0, travel_m));
     }
   }
@@ -121,24 +118,56 @@ class Gatherer {
       const NearestPoints points = nearest_on_axes(link, present.capsule);
       if ((points.a - points.b).squaredNorm() > square(relevant_axis_distance_m(radii_m, core_m, travel_m))) continue;
       const Proximity now = measure_pair(link, present);
-      add_pair(s, index, now, velocity_at(present, now.on_obstacle), travel_m,
-               [&] { return predict_closest_approach(link, present, now, horizon_s_); });
+      const auto velocity = [&](const Vector3& point) { return velocity_at(present, point); };
+      add_pair(
+          s, index, now, [&] { return solid_of(present); }, velocity, travel_m,
+          [&] { return predict_closest_approach(link, present, now, horizon_s_); });
     }
   }
 
-  /// Updates the results with one pair. travel_m: the farthest that any point of the obstacle moves within the horizon;
-  /// velocity_mps: of the obstacle's nearest point; predict() returns the pair's ClosestApproach.
-  template <typename Predict>
-  void add_pair(int shape, int obstacle, Proximity now, const Vector3& velocity_mps, double travel_m,
+  /// Updates the results with one pair. now: that of the link's enclosing capsule. solid() returns the obstacle's exact
+  /// shape, velocity(point) that of its material; travel_m: the farthest that any point of it moves within the horizon;
+  /// predict() returns the ClosestApproach of the capsule.
+  template <typename Solid, typename Velocity, typename Predict>
+  void add_pair(int shape, int obstacle, Proximity now, const Solid& solid, const Velocity& velocity, double travel_m,
                 const Predict& predict) {
+    const LinkShape& link = arm_.shapes[shape];
+    const PosedShape posed{link, poses_, links_.shapes[shape].capsule};
     now.shape = shape;
     now.obstacle = obstacle;
-    if (now.distance_m < clearance_.nearest.distance_m) clearance_.nearest = now;
-    if (arm_.shapes[shape].body == 0) return;
+    if (now.distance_m < clearance_.nearest.distance_m) find_nearest(posed, solid, now);
+    if (link.body == 0) return;
     if (now.axis_distance_m < clearance_.nearest_axis.axis_distance_m) clearance_.nearest_axis = now;
     if (now.distance_m - travel_m > limit_m_) return;
-    const ClosestApproach approach = predict();
-    if (least_distance_m(now, approach) < limit_m_) keep(now, approach, velocity_mps);
+    const ClosestApproach of_capsule = predict();
+    if (link.is_capsule) return consider(now, of_capsule, velocity(now.on_obstacle));
+    const bool relevant = std::min(now.distance_m, of_capsule.distance_m) < std::min(limit_m_, kCapsulesAlone_m);
+    if (!relevant) return consider(now, of_capsule, velocity(now.on_obstacle));
+    const ConvexSolid exact = solid();
+    now = refined(posed, exact, now);
+    const Vector3 velocity_mps = velocity(now.on_obstacle);
+    consider(now, refined(posed, exact, velocity_mps, now, of_capsule, horizon_s_), velocity_mps);
+  }
+
+  /// Replaces the nearest pair if the exact distance is less.
+  template <typename Solid>
+  void find_nearest(const PosedShape& link, const Solid& solid, const Proximity& capsules) {
+    Proximity& nearest = clearance_.nearest;
+    if (link.shape.is_capsule) {
+      nearest = capsules;
+      return;
+    }
+    const SolidGap gap = gap_between(link.solid(), solid(), capsules.normal, nearest.distance_m);
+    if (gap.distance_m >= nearest.distance_m) return;
+    nearest = capsules;
+    nearest.distance_m = gap.distance_m;
+    nearest.on_arm = gap.on_a;
+    nearest.on_obstacle = gap.on_b;
+    nearest.normal = gap.normal;
+  }
+
+  void consider(const Proximity& now, const ClosestApproach& approach, const Vector3& velocity_mps) {
+    if (std::min(now.distance_m, approach.distance_m) < limit_m_) keep(now, approach, velocity_mps);
   }
 
   /// The axis distance beyond which a pair changes no result. radii_m: of the thickest link plus the obstacle's
@@ -162,12 +191,13 @@ class Gatherer {
     else
       near.emplace(now, approach, velocity_mps);
     if (!near.is_full()) return;
-    const auto less = [](const NearPair& a, const NearPair& b) { return least_distance_m(a) < least_distance_m(b); };
+    const auto less = [](const NearPair& a, const NearPair& b) { return a.least_distance_m() < b.least_distance_m(); };
     farthest_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
-    limit_m_ = least_distance_m(near[farthest_]);
+    limit_m_ = near[farthest_].least_distance_m();
   }
 
   const Arm& arm_;
+  const LinkPoses& poses_;
   const Links links_;
   const ObstacleView& view_;
   const double horizon_s_;
@@ -187,7 +217,7 @@ Obstacle ObstacleView::extrapolated(int index, double later_s) const {
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
   for (const LinkShape& shape : arm.shapes) clearance.links.add(transformed(poses, shape));
-  Gatherer gatherer(arm, view, reach, clearance);
+  Gatherer gatherer(arm, poses, view, reach, clearance);
   for (int o = 0; o < view.in_set(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
   for (int o = view.in_set(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);
   return clearance;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "firmware/base/bounded_list.h"
@@ -13,6 +14,9 @@ struct NearPair {
   Proximity now;
   ClosestApproach approach;
   Vector3 velocity_mps = Vector3::Zero();  ///< of the obstacle's material at now.on_obstacle
+
+  /// The lesser of the surface distances now and at the closest approach: what makes one pair more urgent than another.
+  double least_distance_m() const { return std::min(now.distance_m, approach.distance_m); }
 };
 
 constexpr int kMaxNear = 64;
@@ -25,9 +29,8 @@ struct Clearance {
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
   Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 
-  /// Pairs of a movable link shape and an obstacle within the Reach, unordered. The distance of a pair is the lesser of
-  /// its surface distances now and at the closest approach. If there are more than kMaxNear, those with the least
-  /// distance are kept.
+  /// Pairs of a movable link shape and an obstacle within the Reach, unordered. If there are more than kMaxNear, those
+  /// with the least least_distance_m() are kept.
   BoundedList<NearPair, kMaxNear> near;
 };
 
@@ -38,6 +41,10 @@ struct ObstacleView {
   double age_s = 0.0;                                   ///< of the set at the time of the cycle, since its measurement
   double growth_m = 0.0;                                ///< added to the radius of each obstacle of the set
   const std::vector<Obstacle>* surroundings = nullptr;  ///< the static obstacles; null: none
+  /// How much nearer than computed an obstacle of the set may be, because the set is too old. It is part of the
+  /// reported clearance, not of the distances: the arm brakes then, and obstacles that grow on all sides would push it
+  /// about.
+  double possible_m = 0.0;
 
   int in_set() const { return set ? set->count : 0; }
   int count() const { return in_set() + (surroundings ? static_cast<int>(surroundings->size()) : 0); }

@@ -5,7 +5,10 @@ namespace sidestep {
 JointAxes::JointAxes(const LinkPoses& poses) : joints_(poses.joints) {
   for (int i = 0; i < joints_; ++i) {
     const Vector3 direction = poses.rotation[i + 1].col(2);
-    lines_[i] = {direction, poses.origin[i + 1].cross(direction)};
+    if (poses.prismatic[i])
+      lines_[i] = {Vector3::Zero(), direction};
+    else
+      lines_[i] = {direction, poses.origin[i + 1].cross(direction)};
   }
 }
 

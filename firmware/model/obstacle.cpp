@@ -29,6 +29,15 @@ Obstacle capsule_obstacle(const Vector3& centre, const Matrix3& rotation, double
   return rod;
 }
 
+Obstacle cylinder_obstacle(const Vector3& centre, const Matrix3& rotation, double radius_m, double height_m) {
+  const double disc_m = 2e-6;
+  if (height_m < disc_m) return sphere_obstacle(centre, radius_m);
+  Obstacle cylinder = capsule_obstacle(centre, rotation, radius_m, height_m);
+  cylinder.shape = Shape::kCylinder;
+  cylinder.half_thickness_m = radius_m;
+  return cylinder;
+}
+
 Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vector3& edges_m) {
   std::array<int, 3> axes{0, 1, 2};  // from the longest edge to the shortest
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return edges_m[a] > edges_m[b]; });
@@ -40,22 +49,29 @@ Obstacle box_obstacle(const Vector3& centre, const Matrix3& rotation, const Vect
   box.shape = half[1] < line_m ? Shape::kCapsule : Shape::kBox;
   if (box.shape == Shape::kCapsule) return box;
   box.half_width_m = half[1] * rotation.col(axes[1]);
-  box.half_height_m = half[2];
+  box.half_thickness_m = half[2];
   return box;
 }
 
 Box box_of(const Obstacle& obstacle) {
   const Vector3 half_length = 0.5 * (obstacle.capsule.end - obstacle.capsule.start);
   const double half_length_m = half_length.norm(), half_width_m = obstacle.half_width_m.norm();
-  Box box{obstacle.capsule.centre(), {}, {half_length_m, half_width_m, obstacle.half_height_m}};
+  Box box{obstacle.capsule.centre(), {}, {half_length_m, half_width_m, obstacle.half_thickness_m}};
   box.axes.col(0) = half_length / half_length_m;
   box.axes.col(1) = obstacle.half_width_m / half_width_m;
   box.axes.col(2) = box.axes.col(0).cross(box.axes.col(1));
   return box;
 }
 
+ConvexSolid solid_of(const Obstacle& obstacle) {
+  if (obstacle.shape == Shape::kBox) return ConvexSolid::of(box_of(obstacle), inflation_m(obstacle));
+  if (obstacle.shape != Shape::kCylinder) return ConvexSolid::of(obstacle.capsule);
+  return ConvexSolid::cylinder(obstacle.capsule.start, obstacle.capsule.end, obstacle.half_thickness_m,
+                               inflation_m(obstacle));
+}
+
 double inflation_m(const Obstacle& obstacle) {
-  return obstacle.capsule.radius_m - std::hypot(obstacle.half_width_m.norm(), obstacle.half_height_m);
+  return obstacle.capsule.radius_m - std::hypot(obstacle.half_width_m.norm(), obstacle.half_thickness_m);
 }
 
 Vector3 velocity_at(const Obstacle& obstacle, const Vector3& point) {

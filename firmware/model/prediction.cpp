@@ -3,14 +3,16 @@
 #include <algorithm>
 
 #include "firmware/base/bounded_list.h"
+#include "firmware/model/link_proximity.h"
 #include "firmware/model/nearest_points.h"
-#include "firmware/model/proximity.h"
 
 namespace sidestep {
 namespace {
 
 /// A link shape in the base frame, and the ball around it.
 struct Link {
+  const LinkShape& shape;
+  const LinkPoses& poses;
   Capsule capsule;
   Vector3 centre;
   double extent_m;
@@ -23,34 +25,44 @@ Links moving_links(const Arm& arm, const LinkPoses& poses) {
   for (const LinkShape& shape : arm.shapes) {
     if (shape.body == 0) continue;
     const Capsule capsule = transformed(poses, shape);
-    links.add({capsule, capsule.centre(), shape.capsule_body.extent_m()});
+    links.emplace(shape, poses, capsule, capsule.centre(), shape.capsule_body.extent_m());
   }
   return links;
 }
 
 /// The least of least_m and the distances of the links to an obstacle in the ball of extent_m around centre.
-/// distance_m(capsule, least_m) is called only for links whose ball is nearer to the obstacle's than least_m.
-template <typename Distance>
-double nearest_m(const Links& links, const Vector3& centre, double extent_m, double least_m,
-                 const Distance& distance_m) {
+/// distance_m(capsule, least_m) is called only for links whose ball is nearer to the obstacle's than least_m. Where it
+/// is less than least_m and the shape is no capsule, the exact distance to solid() decides.
+template <typename Distance, typename Solid>
+double nearest_m(const Links& links, const Vector3& centre, double extent_m, double least_m, const Distance& distance_m,
+                 const Solid& solid) {
   for (const Link& link : links) {
     const double near_m = link.extent_m + extent_m + least_m;
     if (near_m <= 0.0 || (link.centre - centre).squaredNorm() >= near_m * near_m) continue;
-    least_m = std::min(least_m, distance_m(link.capsule, least_m));
+    double found_m = distance_m(link.capsule, least_m);
+    if (found_m < least_m && !link.shape.is_capsule)
+      found_m = distance_between_m(solid_of(link.poses, link.shape), solid(), link.centre - centre, least_m);
+    least_m = std::min(least_m, found_m);
   }
   return least_m;
 }
 
 double nearest_to_sphere_m(const Links& links, const Vector3& centre, double radius_m, double least_m) {
-  return nearest_m(links, centre, radius_m, least_m, [&](const Capsule& link, double) {
+  const auto distance_m = [&](const Capsule& link, double) {
     return (centre - nearest_on_segment(link.start, link.end, centre)).norm() - link.radius_m - radius_m;
+  };
+  return nearest_m(links, centre, radius_m, least_m, distance_m, [&] {
+    return ConvexSolid::of(Capsule{centre, centre, radius_m});
   });
 }
 
 double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double least_m) {
   const Capsule& capsule = obstacle.capsule;
-  return nearest_m(links, capsule.centre(), capsule.extent_m(), least_m,
-                   [&](const Capsule& link, double enough_m) { return surface_distance_m(link, obstacle, enough_m); });
+  const auto distance_m = [&](const Capsule& link, double enough_m) {
+    return surface_distance_m(link, obstacle, enough_m);
+  };
+  return nearest_m(links, capsule.centre(), capsule.extent_m(), least_m, distance_m,
+                   [&] { return solid_of(obstacle); });
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "firmware/model/proximity.h"
 
+#include "firmware/model/gjk.h"
 #include "firmware/model/pair_proximity.h"
 
 namespace sidestep {
@@ -69,38 +70,65 @@ struct AxisCore {
   }
 };
 
-/// The core of a box. Any convex solid with a function that returns its SegmentGap can take its place.
-struct BoxCore {
+/// The core of a solid whose gap to a segment is known: gap(start, end, shift) with the solid moved by `shift`.
+template <typename Gap>
+struct SolidCore {
   const Obstacle& obstacle;
+  double inside_capsule_m;  ///< no point of the core is farther from the axis of the enclosing capsule
+  Gap gap;
 
-  double reach_m() const { return obstacle.capsule.radius_m; }
+  double reach_m() const { return inside_capsule_m; }
   Proximity proximity(const Capsule& link) const {
-    const SegmentGap gap = gap_to_box(link.start, link.end, box_of(obstacle));
+    const SegmentGap nearest = gap(link.start, link.end, Vector3(Vector3::Zero()));
     Proximity pair;
-    pair.axis_distance_m = gap.distance_m;
-    pair.distance_m = gap.distance_m - link.radius_m - inflation_m(obstacle);
-    pair.on_arm = gap.on_segment;
-    pair.on_obstacle = gap.on_solid;
-    pair.normal = gap.normal;
+    pair.axis_distance_m = nearest.distance_m;
+    pair.distance_m = nearest.distance_m - link.radius_m - inflation_m(obstacle);
+    pair.on_arm = nearest.on_segment;
+    pair.on_obstacle = nearest.on_solid;
+    pair.normal = nearest.normal;
     return pair;
   }
   double distance_m(const Capsule& link, double) const { return proximity(link).distance_m; }
   ClosestApproach closest_approach(const Capsule& link, const Proximity& now, double horizon_s) const {
-    const Box box = box_of(obstacle);
     const Vector3 velocity_mps = velocity_at(obstacle, now.on_obstacle);
-    const auto gap_after = [&](double time_s) {
-      return gap_to_box(link.start, link.end, {box.centre + velocity_mps * time_s, box.axes, box.half_m});
-    };
+    const auto gap_after = [&](double time_s) { return gap(link.start, link.end, Vector3(velocity_mps * time_s)); };
     return TangentSearch(now, velocity_mps, link.radius_m + inflation_m(obstacle), gap_after).within(horizon_s);
   }
 };
+
+auto box_core(const Obstacle& obstacle) {
+  const auto gap = [box = box_of(obstacle)](const Vector3& start, const Vector3& end, const Vector3& shift) {
+    return gap_to_box(start, end, {box.centre + shift, box.axes, box.half_m});
+  };
+  return SolidCore<decltype(gap)>{obstacle, obstacle.capsule.radius_m, gap};
+}
+
+ConvexSolid core_of(const Obstacle& obstacle) {
+  ConvexSolid core = solid_of(obstacle);
+  core.radius_m = 0.0;
+  return core;
+}
+
+auto cylinder_core(const Obstacle& obstacle) {
+  const auto gap = [cylinder = core_of(obstacle)](const Vector3& start, const Vector3& end, const Vector3& shift) {
+    ConvexSolid moved = cylinder;
+    moved.centre += shift;
+    const Vector3 apart = 0.5 * (start + end) - moved.centre;
+    const ConvexSolid segment = ConvexSolid::of(Capsule{start, end, 0.0});
+    const SolidGap exact = gap_between(segment, moved, apart.isZero(0.0) ? Vector3(Vector3::UnitX()) : apart);
+    return SegmentGap{exact.core_m, exact.on_a, exact.on_b, exact.normal};
+  };
+  return SolidCore<decltype(gap)>{obstacle, obstacle.half_thickness_m, gap};
+}
 
 /// compute(core) with the core of the obstacle's shape: the one place where the shape decides what is computed.
 template <typename Compute>
 auto with_core(const Obstacle& obstacle, const Compute& compute) {
   switch (obstacle.shape) {
     case Shape::kBox:
-      return compute(BoxCore{obstacle});
+      return compute(box_core(obstacle));
+    case Shape::kCylinder:
+      return compute(cylinder_core(obstacle));
     case Shape::kSphere:
     case Shape::kCapsule:
       break;

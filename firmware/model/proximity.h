@@ -20,9 +20,10 @@ struct Proximity {
 
 /// The closest approach of a moving obstacle to a link at rest.
 struct ClosestApproach {
-  double time_s = 0.0;           ///< from now; 0 if the obstacle is not coming closer
-  double distance_m = 0.0;       ///< between surfaces at that time
-  double axis_distance_m = 0.0;  ///< from the link's axis to the core at that time; not computed (infinite) for a box
+  double time_s = 0.0;      ///< from now; 0 if the obstacle is not coming closer
+  double distance_m = 0.0;  ///< between surfaces at that time
+  double axis_distance_m =
+      0.0;  ///< from the link's axis to the core at that time; not computed (infinite) for a box or cylinder
   Vector3 on_arm = Vector3::Zero();   ///< the link axis' nearest point at that time, m
   Vector3 normal = Vector3::UnitZ();  ///< unit, from the obstacle to the arm at that time; if head_on, any direction
                                       ///< perpendicular to the path
@@ -41,14 +42,16 @@ Proximity measure_pair(const Capsule& link, const Obstacle& obstacle);
 double surface_distance_m(const Capsule& link, const Obstacle& obstacle, double enough_m);
 
 /// A bound, m: distance to the core >= distance to the axis of the enclosing capsule - core_reach_m(). 0 for a sphere
-/// or capsule, the radius of `capsule` for a box. A caller can discard pairs by the distance between axes alone.
+/// or capsule, the radius of `capsule` for a box, that of the core for a cylinder. A caller can discard pairs by the
+/// distance between axes alone.
 double core_reach_m(const Obstacle& obstacle);
 
 /// The closest approach within horizon_s. `present` is the result of measure_pair(link, obstacle). The whole obstacle
 /// is assumed to translate at the velocity of its point present.on_obstacle.
 ///   sphere   exact
 ///   capsule  only that point, grown by the radius, is followed; other points of the capsule may come nearer
-///   box      sampled at the present and at no more than 5 instants up to horizon_s; the true closest approach may be
+///   box, cylinder  sampled at the present and at no more than 5 instants up to horizon_s; the true closest approach
+///   may be
 ///            nearer than the nearest sample, never farther
 ClosestApproach predict_closest_approach(const Capsule& link, const Obstacle& obstacle, const Proximity& present,
                                          double horizon_s);

@@ -6,7 +6,7 @@ namespace sidestep {
 
 constexpr int kMinJoints = 6;
 constexpr int kMaxJoints = 10;
-constexpr int kMaxShapes = 64;       ///< collision shapes (capsules) of an arm
+constexpr int kMaxShapes = 128;      ///< collision shapes of an arm, pieces of meshes included
 constexpr int kMaxObstacles = 4096;  ///< in one obstacle set
 
 using Vector3 = Eigen::Vector3d;

@@ -1,20 +1,23 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "firmware/base/command_line.h"
 #include "firmware/control/types/settings.h"
 #include "firmware/model/kinematics.h"
 #include "firmware/model/load/load_arm.h"
-#include "firmware/model/load/self_pairs.h"
+#include "firmware/model/load/srdf.h"
 
 namespace sidestep {
 namespace {
 
-constexpr double kLargeSlack_m = 0.05;
+constexpr double kLargeExcess_m = 0.03;
+constexpr double kLargeShare = 0.05;  // of the configurations without contact, forbidden
 constexpr double kShortShape_m = 1e-3;
 
 struct Arguments {
@@ -23,60 +26,83 @@ struct Arguments {
   bool forward_kinematics = false;
 };
 
+const char* unit_of(const Arm& arm, int joint) {
+  return arm.prismatic[static_cast<size_t>(joint)] ? "m" : "rad";
+}
+
 void print_joints(const Arm& arm) {
   fmt::print("{} joints\n  {:<24} {:>9} {:>9} {:>8} {:>8}\n", arm.joints, "", "lower", "upper", "speed", "reach");
   for (int i = 0; i < arm.joints; ++i)
-    fmt::print("  {:<24} {:>9.4g} {:>9.4g} {:>8.4g} {:>8.3g}\n", arm.joint_names[static_cast<size_t>(i)],
+    fmt::print("  {:<24} {:>9.4g} {:>9.4g} {:>8.4g} {:>8.3g}  {}\n", arm.joint_names[static_cast<size_t>(i)],
                arm.limits.lower_rad[i], arm.limits.upper_rad[i], arm.limits.velocity_radps[i],
-               arm.joint_placement[static_cast<size_t>(i) + 1].translation().norm());
-  fmt::print("  (rad, rad, rad/s; reach: distance from the joint before, m)\n");
+               arm.joint_placement[static_cast<size_t>(i) + 1].translation().norm(), unit_of(arm, i));
+  fmt::print("  (rad and rad/s, m and m/s for a prismatic joint; reach: distance from the joint before, m)\n");
+}
+
+std::string kind_of(const LinkShape& shape) {
+  if (shape.is_capsule) return shape.capsule_body.is_sphere() ? "sphere" : "capsule";
+  if (shape.solid.kind == CoreKind::kBox) return "box";
+  return shape.solid.kind == CoreKind::kCylinder ? "cylinder" : "piece of a mesh";
 }
 
 void print_shapes(const Arm& arm) {
-  fmt::print("{} capsules\n  {:<24} {:>5} {:>8} {:>8} {:>8}\n", arm.shapes.size(), "", "body", "radius", "length",
-             "slack");
+  fmt::print("{} shapes\n  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8}  {}\n", arm.shapes.size(), "", "body", "radius",
+             "length", "excess", "largest", "kind");
   for (const LinkShape& shape : arm.shapes) {
     const Capsule& capsule = shape.capsule_body;
-    const std::string slack = shape.slack_m > 0.0 ? fmt::format("{:.4f}", shape.slack_m) : "-";
-    fmt::print("  {:<24} {:>5} {:>8.4f} {:>8.4f} {:>8}\n", shape.link, shape.body, capsule.radius_m,
-               (capsule.end - capsule.start).norm(), slack);
+    const bool is_piece = shape.solid.kind == CoreKind::kPolyhedron && !shape.is_capsule;
+    const auto excess = [&](double m) { return is_piece ? fmt::format("{:.4f}", m) : "-"; };
+    fmt::print("  {:<24} {:>5} {:>8.4f} {:>8.4f} {:>8} {:>8}  {}\n", shape.link, shape.body, capsule.radius_m,
+               (capsule.end - capsule.start).norm(), excess(shape.excess_p95_m), excess(shape.excess_m),
+               kind_of(shape));
   }
-  fmt::print("  (m; slack: largest distance from a mesh to the surface of its capsules)\n");
+  fmt::print(
+      "  (m; radius and length of the enclosing capsule; excess: from the surface of a mesh's pieces to the mesh, "
+      "for 95 % of it and at most)\n");
 }
 
 std::vector<std::string> odd_joints(const Arm& arm) {
   std::vector<std::string> odd;
   for (int i = 0; i < arm.joints; ++i) {
     const std::string& name = arm.joint_names[static_cast<size_t>(i)];
-    const double range_rad = arm.limits.upper_rad[i] - arm.limits.lower_rad[i];
+    const double range_rad = arm.limits.upper_rad[i] - arm.limits.lower_rad[i], scale = arm.joint_scale[i];
+    const char* unit = unit_of(arm, i);
     if (std::isinf(range_rad)) odd.push_back(fmt::format("joint '{}' is continuous: it has no position limits", name));
-    if (range_rad < 0.1) odd.push_back(fmt::format("joint '{}' can only move {:.3g} rad", name, range_rad));
-    if (arm.limits.velocity_radps[i] > 10.0)
-      odd.push_back(fmt::format("joint '{}' may turn at {:.3g} rad/s", name, arm.limits.velocity_radps[i]));
+    if (range_rad < 0.1 * scale)
+      odd.push_back(fmt::format("joint '{}' can only move {:.3g} {}", name, range_rad, unit));
+    if (arm.limits.velocity_radps[i] > 10.0 * scale)
+      odd.push_back(fmt::format("joint '{}' may move at {:.3g} {}/s", name, arm.limits.velocity_radps[i], unit));
     if (arm.limits.lower_rad[i] > 0.0 || arm.limits.upper_rad[i] < 0.0)
       odd.push_back(fmt::format("joint '{}' cannot be at 0", name));
   }
   return odd;
 }
 
-/// Capsules much larger than their mesh, tiny shapes, and links that overlap by design.
-std::vector<std::string> odd_shapes(const Arm& arm) {
+/// Pieces much larger than their mesh, tiny shapes, and links that overlap by design.
+std::vector<std::string> odd_shapes(const Arm& arm, const SelfPairs& pairs) {
   std::vector<std::string> odd;
   std::map<std::string, double> large;
   for (const LinkShape& shape : arm.shapes) {
     const Capsule& capsule = shape.capsule_body;
-    if (shape.slack_m > kLargeSlack_m) large[shape.link] = shape.slack_m;
+    if (shape.excess_m > kLargeExcess_m) large[shape.link] = std::max(large[shape.link], shape.excess_m);
     if (2.0 * capsule.radius_m + (capsule.end - capsule.start).norm() < kShortShape_m)
       odd.push_back(fmt::format("link '{}' has a shape smaller than {:g} m", shape.link, kShortShape_m));
   }
-  for (const auto& [link, slack_m] : large)
-    odd.push_back(
-        fmt::format("link '{}': its capsules extend {:.3f} m beyond the mesh; try --capsules-per-mesh 4 "
-                    "(robot.capsules_per_mesh in a configuration)",
-                    link, slack_m));
-  for (const auto& [a, b] : find_overlaps(arm, ShieldSettings{}.self_clearance_m))
-    odd.push_back(fmt::format("links '{}' and '{}' overlap by design: they are not kept apart",
-                              arm.shapes[static_cast<size_t>(a)].link, arm.shapes[static_cast<size_t>(b)].link));
+  for (const auto& [link, excess_m] : large)
+    odd.push_back(fmt::format("link '{}': its pieces extend {:.3f} m beyond the mesh", link, excess_m));
+  if (pairs.forbidden_share > kLargeShare && pairs.worst >= 0) {
+    const SelfPair& worst = pairs.kept[static_cast<size_t>(pairs.worst)];
+    odd.push_back(fmt::format(
+        "{:.0f} % of the configurations without contact are forbidden, {:.0f} % by links '{}' and "
+        "'{}' (robot.ignore_pairs)",
+        100.0 * pairs.forbidden_share, 100.0 * pairs.worst_share, arm.shapes[static_cast<size_t>(worst.first)].link,
+        arm.shapes[static_cast<size_t>(worst.second)].link));
+  }
+  std::set<LinkPair> overlapping;
+  for (const auto& [a, b] : pairs.overlaps)
+    overlapping.emplace(arm.shapes[static_cast<size_t>(a)].link, arm.shapes[static_cast<size_t>(b)].link);
+  for (const auto& [a, b] : overlapping)
+    odd.push_back(fmt::format("links '{}' and '{}' overlap by design: parts of them are not kept apart", a, b));
   return odd;
 }
 
@@ -104,7 +130,7 @@ void describe(CommandLine& app, Arguments& arguments) {
   app.add_option("--tip", arguments.tip, "tip link, the tool").required();
   app.add_option("--package-path", arguments.meshes.package_path, "folder that is searched first for package://")
       .one_value_at_a_time();
-  app.add_option("--capsules-per-mesh", arguments.meshes.capsules_per_mesh, "most capsules for one mesh (default 3)")
+  app.add_option("--pieces-per-mesh", arguments.meshes.pieces_per_mesh, "most convex pieces for one mesh (default 8)")
       .range(1, 8);
   app.add_flag("--fk", arguments.forward_kinematics,
                "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
@@ -119,11 +145,18 @@ int run(const Arguments& arguments) {
   }
   print_joints(arm);
   print_shapes(arm);
-  fmt::print("{} pairs of capsules are kept apart from each other\n",
-             find_self_pairs(arm, ShieldSettings{}.self_clearance_m).size());
+  const std::string srdf = srdf_beside(arguments.urdf);
+  const SelfPairs pairs = find_self_pairs(arm, ShieldSettings{}.self_clearance_m,
+                                          srdf.empty() ? std::vector<LinkPair>() : disabled_collisions(srdf));
+  fmt::print(
+      "{} pairs of shapes are kept apart from each other; they forbid {:.1f} % of the configurations without "
+      "contact\n",
+      pairs.kept.size(), 100.0 * pairs.forbidden_share);
   check_limits(arm);
-  std::vector<std::string> odd = arm.remarks;
-  for (const auto& more : {odd_joints(arm), odd_shapes(arm)}) odd.insert(odd.end(), more.begin(), more.end());
+  std::vector<std::string> odd;
+  for (const auto& remarks : {arm.remarks, arm.warnings, odd_joints(arm), odd_shapes(arm, pairs)})
+    for (const std::string& remark : remarks)  // each once: several shapes of two links may overlap
+      if (std::find(odd.begin(), odd.end(), remark) == odd.end()) odd.push_back(remark);
   for (const std::string& remark : odd) fmt::print("odd: {}\n", remark);
   return odd.empty() ? 0 : 1;
 }
@@ -133,7 +166,7 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   sidestep::CommandLine app{
-      "Shows how the controller reads a URDF: joints, limits, the capsules around the links, and oddities."};
+      "Shows how the controller reads a URDF: joints, limits, the shapes of the links, and oddities."};
   sidestep::Arguments arguments;
   sidestep::describe(app, arguments);
   try {

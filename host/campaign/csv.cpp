@@ -17,7 +17,7 @@ struct Column {
   double TrialMetrics::*value;
 };
 
-constexpr std::array<Column, 19> kColumns{{
+constexpr std::array<Column, 20> kColumns{{
     {"obstacles", &TrialMetrics::obstacles},
     {"duration_s", &TrialMetrics::duration_s},
     {"clearance_m", &TrialMetrics::clearance_m},
@@ -37,6 +37,7 @@ constexpr std::array<Column, 19> kColumns{{
     {"chatter_per_s", &TrialMetrics::chatter_per_s},
     {"cpu_mean_s", &TrialMetrics::cpu_mean_s},
     {"cpu_worst_s", &TrialMetrics::cpu_worst_s},
+    {"self_clearance_m", &TrialMetrics::self_clearance_m},
 }};
 
 std::string header() {

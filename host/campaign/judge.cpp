@@ -6,7 +6,8 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kNear_m = 0.15;  // more than the arm and an obstacle can close in one period
+constexpr double kNear_m = 0.15;      // more than the arm and an obstacle can close in one period
+constexpr double kSelfNear_m = 0.05;  // the same for two links
 
 /// The time from which on the witness's tool stays within kArrived_m of its goal.
 double witness_arrival_s(const Scene& scene) {
@@ -50,12 +51,21 @@ void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_
   const double clearance_m = clearance_at(scene_, arm, t_s, std::max(kNear_m, metrics_.clearance_m));
   near_ = clearance_m < kNear_m;
   metrics_.clearance_m = std::min(metrics_.clearance_m, clearance_m);
+  const bool links_near = measure_self_clearance(arm);
   const int checks = scene_.arm->contact_checks_per_period();
-  for (int i = 1; i < checks && near_; ++i) {
+  for (int i = 1; i < checks && (near_ || links_near); ++i) {
     const double back = static_cast<double>(i) / checks;
     const ArmPose between = scene_.arm->pose(q_rad + back * (last_rad_ - q_rad));
     metrics_.clearance_m = clearance_at(scene_, between, t_s - back * kPeriod_s, metrics_.clearance_m);
+    measure_self_clearance(between);
   }
+}
+
+bool Judge::measure_self_clearance(const ArmPose& arm) {
+  const double clearance_m = scene_.arm->self_clearance(arm, kSelfNear_m);
+  if (clearance_m >= kSelfNear_m) return false;
+  metrics_.self_clearance_m = std::min(metrics_.self_clearance_m, clearance_m);
+  return true;
 }
 
 void Judge::measure_joints(const Joints& q_rad) {

@@ -22,8 +22,11 @@ class Judge {
   TrialMetrics metrics() const;
 
  private:
-  /// Least clearance at this period and, near an obstacle, at instants between the last period and this one.
+  /// Least clearances to obstacles and between links at this period and, where one of them is small, at instants
+  /// between the last period and this one.
   void measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s);
+  /// Whether links are near each other.
+  bool measure_self_clearance(const ArmPose& arm);
   void measure_joints(const Joints& q_rad);
   void measure_tool_error(const ArmPose& arm, double t_s);
   /// Whether the tool error at t_s is part of its root mean square.

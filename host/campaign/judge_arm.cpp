@@ -58,13 +58,15 @@ std::unique_ptr<JudgeArm> judge_arm_of(const Config& config) {
 ToolJacobian tool_jacobian(const ArmPose& pose) {
   ToolJacobian jacobian(3, pose.axes.size());
   for (size_t i = 0; i < pose.axes.size(); ++i)
-    jacobian.col(static_cast<int>(i)) = pose.axes[i].cross(pose.tool() - pose.origins[i]);
+    jacobian.col(static_cast<int>(i)) =
+        pose.is_prismatic(i) ? pose.axes[i] : pose.axes[i].cross(pose.tool() - pose.origins[i]);
   return jacobian;
 }
 
 Vector3 tool_angular_velocity(const ArmPose& pose, const Joints& qd_radps) {
   Vector3 turn_radps = Vector3::Zero();
-  for (size_t i = 0; i < pose.axes.size(); ++i) turn_radps += qd_radps[static_cast<int>(i)] * pose.axes[i];
+  for (size_t i = 0; i < pose.axes.size(); ++i)
+    if (!pose.is_prismatic(i)) turn_radps += qd_radps[static_cast<int>(i)] * pose.axes[i];
   return turn_radps;
 }
 

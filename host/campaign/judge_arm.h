@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/io/config/config.h"
+#include "firmware/model/kinematics.h"
 #include "host/sim/truth.h"
 
 namespace sidestep::campaign {
@@ -20,10 +21,12 @@ struct ArmPose {
   std::vector<Vector3> corners;  ///< polyline of the arm: base, joint origins, tool
   Matrix3 tool_rotation = Matrix3::Identity();
   std::vector<Vector3> axes;                ///< unit direction of each joint's axis
+  std::vector<bool> prismatic;              ///< of each joint; empty: none is
   std::vector<Vector3> origins;             ///< a point of each joint's axis
   std::shared_ptr<const sim::Truth> truth;  ///< the arm's surface; null if the corners define it
-  std::vector<Capsule> capsules;            ///< the controller's model of the surface; empty if the corners define it
+  LinkPoses links;                          ///< of the controller's model; not set if the corners define the surface
 
+  bool is_prismatic(size_t joint) const { return joint < prismatic.size() && prismatic[joint]; }
   const Vector3& tool() const { return corners.back(); }
   const Vector3& wrist() const { return corners[corners.size() - 2]; }
 };
@@ -46,8 +49,12 @@ class JudgeArm {
   virtual double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                            double within_m = sim::kNothingNear) const = 0;
 
-  /// The same distance in the controller's model, which is never larger. If a witness keeps this clearance, the
-  /// controller can follow it.
+  /// Least distance between the surfaces of two links that do not touch by construction; negative (or 0) if they touch.
+  /// Returns within_m if the distance is not less. The pairs are the judge's own, not the controller's.
+  virtual double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const = 0;
+
+  /// The same distance as clearance() in the controller's model, which is never larger. If a witness keeps this
+  /// clearance, the controller can follow it.
   virtual double controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
     return clearance(pose, center_m, radius_m);
   }

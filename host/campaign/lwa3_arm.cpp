@@ -6,6 +6,7 @@
 
 #include "host/campaign/config_name.h"
 #include "host/campaign/family.h"
+#include "host/campaign/segment.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -14,12 +15,6 @@ constexpr size_t kJoints = 7;
 constexpr std::array<double, kJoints> kAlphaSign{0, 1, -1, 1, -1, 1, -1};  // alpha = sign * pi / 2
 constexpr std::array<double, kJoints> kOffset_m{0.3, 0, 0.328, 0, 0.2765, 0, 0};
 constexpr double kTool_m = 0.3372;
-
-double distance_to_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
-  const Vector3 along = end - start;
-  const double share = std::clamp((p - start).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - start - share * along).norm();
-}
 
 Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, double velocity_radps) {
   Limits limits;
@@ -63,6 +58,18 @@ double Lwa3Arm::clearance(const ArmPose& pose, const Vector3& center_m, double r
   for (size_t i = 1; i < 4; ++i)
     least_m = std::min(least_m, distance_to_segment(pose.corners[i], pose.corners[i + 1], center_m));
   return std::min(within_m, least_m - kLinkRadius_m - radius_m);
+}
+
+double Lwa3Arm::self_clearance(const ArmPose& pose, double within_m) const {
+  double least_m = within_m;
+  for (size_t a = 0; a + 1 < pose.corners.size(); ++a) {
+    for (size_t b = a + 2; b + 1 < pose.corners.size(); ++b) {
+      const double axes_m =
+          segment_distance(pose.corners[a], pose.corners[a + 1], pose.corners[b], pose.corners[b + 1]);
+      least_m = std::min(least_m, axes_m - kLinkRadius_m - kLinkRadius_m);
+    }
+  }
+  return least_m;
 }
 
 Limits Lwa3Arm::range() const {

@@ -11,6 +11,8 @@ class Lwa3Arm : public JudgeArm {
   ArmPose pose(const Joints& q_rad) const override;
   double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                    double within_m = sim::kNothingNear) const override;
+  /// Of the capsules that share no corner.
+  double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const override;
   Limits limits(const Family& family) const override;
   Limits range() const override;
   ArmSource source(const Family& family) const override;

@@ -27,6 +27,7 @@ struct TrialMetrics {
   double chatter_per_s = kNone;        ///< sign changes of a joint's acceleration near an obstacle, per second
   double cpu_mean_s = kNone;           ///< CPU time of one cycle
   double cpu_worst_s = kNone;
+  double self_clearance_m = std::numeric_limits<double>::infinity();  ///< least between links, if it is below 0.05 m
 };
 
 }  // namespace sidestep::campaign

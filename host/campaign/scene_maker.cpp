@@ -35,13 +35,27 @@ Joints draw_posture(Random& random, const JudgeArm& arm, double share, double lo
   throw std::runtime_error("no posture found whose tool is above the base and whose links keep clear of each other");
 }
 
+constexpr double kFastest_radps = 1.2;  // of the witness
+
+/// The time in which a motion from start to goal takes the joints at about half of the slowest joint's speed; those of
+/// the two kinds are timed separately.
+double motion_s(const Scene& scene) {
+  const ArmPose pose = scene.arm->pose(scene.goal_rad);
+  const Limits limits = scene.arm->limits(*scene.family);
+  double widest[2] = {}, speed[2] = {kFastest_radps, kFastest_radps * kPrismaticScale_m};
+  for (int i = 0; i < scene.goal_rad.size(); ++i) {
+    const bool kind = pose.is_prismatic(static_cast<size_t>(i));
+    widest[kind] = std::max(widest[kind], std::abs(scene.goal_rad[i] - scene.start_rad[i]));
+    speed[kind] = std::min(speed[kind], limits.velocity_radps[i]);
+  }
+  return 1.95 * std::max(widest[0] / speed[0], widest[1] / speed[1]);
+}
+
 /// Draws start, goal and duration. Returns false if the motion takes too long.
 bool try_witness(Random& random, Scene& scene) {
   scene.start_rad = draw_posture(random, *scene.arm, 0.7, kNoFloor);
   scene.goal_rad = draw_posture(random, *scene.arm, 0.8, 0.10);
-  const double widest_rad = (scene.goal_rad - scene.start_rad).cwiseAbs().maxCoeff();
-  const double speed_radps = std::min(1.2, scene.arm->limits(*scene.family).velocity_radps.minCoeff());
-  scene.witness_s = 0.5 + 1.95 * widest_rad / speed_radps;
+  scene.witness_s = 0.5 + motion_s(scene);
   scene.periods = static_cast<int>(std::ceil((scene.witness_s + kRest_s) / kPeriod_s));
   return scene.witness_s + kRest_s <= kLongest_s;
 }

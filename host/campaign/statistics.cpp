@@ -21,7 +21,10 @@ std::vector<Sample> samples(const std::vector<Row>& rows) {
 }
 
 bool touched(const Row& row) {
-  return row.metrics.clearance_m < 0.0;
+  return row.metrics.clearance_m < 0.0 || touched_itself(row);
+}
+bool touched_itself(const Row& row) {
+  return row.metrics.self_clearance_m <= 0.0;
 }
 bool arrived(const Row& row) {
   return row.metrics.final_error_m < arrived_within_m(*row.family);

@@ -10,8 +10,10 @@ using Sample = std::vector<Row>;
 /// Splits sorted rows where law or family changes.
 std::vector<Sample> samples(const std::vector<Row>& rows);
 
-/// The arm touched an obstacle.
+/// The arm touched an obstacle or itself.
 bool touched(const Row& row);
+/// Links of the arm touched each other.
+bool touched_itself(const Row& row);
 /// The tool is at the target at the end: within 10 mm, after a dodge within 5 mm.
 bool arrived(const Row& row);
 /// The arm arrived without contact.

@@ -55,6 +55,7 @@ const Columns& reach_columns() {
   static const Columns columns{
       {"success", "%", 1, share(succeeded)},
       {"contact", "%", 1, share(touched)},
+      {"of links", "%", 1, share(touched_itself)},
       {"arrival", "%", 1, share(arrived)},
       {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
       {"arrival", "s", 2, average_success(&TrialMetrics::arrival_s)},
@@ -75,6 +76,7 @@ Columns full_pose_columns() {
 const Columns& dodge_columns() {
   static const Columns columns{
       {"contact", "%", 1, share(touched)},
+      {"of links", "%", 1, share(touched_itself)},
       {"tool error", "RMS, mm", 1, average(&TrialMetrics::error_rms_m, kMilli)},
       {"tool error", "max, mm", 0, maximum(&TrialMetrics::error_max_m, kMilli)},
       {"orientation", "RMS, deg", 1, average(&TrialMetrics::turn_rms_rad, kDegree)},
@@ -86,8 +88,8 @@ const Columns& dodge_columns() {
 
 const Columns& cpu_columns() {
   static const Columns columns{
-      {"CPU", "mean, us", 1, average(&TrialMetrics::cpu_mean_s, kMicro)},
-      {"CPU", "max, us", 0, maximum(&TrialMetrics::cpu_worst_s, kMicro)},
+      {"hot step", "mean, us", 1, average(&TrialMetrics::cpu_mean_s, kMicro)},
+      {"hot step", "max, us", 0, maximum(&TrialMetrics::cpu_worst_s, kMicro)},
   };
   return columns;
 }

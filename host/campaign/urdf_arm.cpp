@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "firmware/model/kinematics.h"
-#include "firmware/model/nearest_points.h"
+#include "firmware/model/link_proximity.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -23,7 +23,8 @@ void cut_to_one_turn(double& lower_rad, double& upper_rad) {
 
 UrdfArm::UrdfArm(const Config& config)
     : source_{config.robot.urdf, config.robot.base, config.robot.tip, config.file},
-      truth_(sim::Arm(config.robot.urdf, config.robot.base, config.robot.tip, config.robot.meshes.package_path)),
+      truth_(sim::Arm(config.robot.urdf, config.robot.base, config.robot.tip, config.robot.meshes.package_path,
+                      config.robot.joint_positions)),
       model_(config.model) {}
 
 ArmPose UrdfArm::pose(const Joints& q_rad) const {
@@ -34,13 +35,13 @@ ArmPose UrdfArm::pose(const Joints& q_rad) const {
   pose.corners.emplace_back(Vector3::Zero());
   for (const sim::JointAxis& joint : truth->arm().axes()) {
     pose.axes.push_back(joint.direction);
+    pose.prismatic.push_back(joint.prismatic);
     pose.origins.push_back(joint.origin_m);
     if ((joint.origin_m - pose.corners.back()).norm() > kCoincident_m) pose.corners.push_back(joint.origin_m);
   }
   pose.corners.push_back(truth->tool_m());
   pose.truth = truth;
-  const LinkPoses poses = forward_kinematics(model_.arm, q_rad);
-  for (const LinkShape& shape : model_.arm.shapes) pose.capsules.push_back(transformed(poses, shape));
+  pose.links = forward_kinematics(model_.arm, q_rad);
   return pose;
 }
 
@@ -51,20 +52,27 @@ double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double r
   return pose.truth->nearest({sphere}, within_m).clearance_m;
 }
 
+double UrdfArm::self_clearance(const ArmPose& pose, double within_m) const {
+  return std::min(within_m, pose.truth->nearest_links(within_m).clearance_m);
+}
+
 double UrdfArm::controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
   double least_m = sim::kNothingNear;
-  for (const Capsule& capsule : pose.capsules)
-    least_m = std::min(least_m, (nearest_on_segment(capsule.start, capsule.end, center_m) - center_m).norm() -
-                                    capsule.radius_m - radius_m);
+  const ConvexSolid sphere = ConvexSolid::of(Capsule{center_m, center_m, radius_m});
+  for (const LinkShape& shape : model_.arm.shapes) {
+    const Capsule capsule = transformed(pose.links, shape);
+    const Vector3 away = capsule.centre() - center_m;
+    if (away.norm() - capsule.extent_m() - radius_m >= least_m) continue;
+    least_m = std::min(least_m, gap_between(solid_of(pose.links, shape), sphere, away, least_m).distance_m);
+  }
   return least_m;
 }
 
 bool UrdfArm::keeps_clear_of_itself(const ArmPose& pose) const {
-  return std::all_of(model_.self_pairs.begin(), model_.self_pairs.end(), [&](const auto& pair) {
-    const Capsule &a = pose.capsules[static_cast<size_t>(pair.first)],
-                  &b = pose.capsules[static_cast<size_t>(pair.second)];
-    const NearestPoints nearest = nearest_on_axes(a, b);
-    return (nearest.a - nearest.b).norm() >= a.radius_m + b.radius_m + model_.settings.shield.self_clearance_m;
+  return std::all_of(model_.self_pairs.begin(), model_.self_pairs.end(), [&](const SelfPair& pair) {
+    const ConvexSolid a = solid_of(pose.links, model_.arm.shapes[static_cast<size_t>(pair.first)]);
+    const ConvexSolid b = solid_of(pose.links, model_.arm.shapes[static_cast<size_t>(pair.second)]);
+    return gap_between(a, b, a.centre - b.centre, pair.clearance_m).distance_m >= pair.clearance_m;
   });
 }
 
@@ -78,7 +86,8 @@ ArmSource UrdfArm::source(const Family&) const {
 
 Limits UrdfArm::range() const {
   Limits range = model_.arm.limits;
-  for (int i = 0; i < model_.arm.joints; ++i) cut_to_one_turn(range.lower_rad[i], range.upper_rad[i]);
+  for (int i = 0; i < model_.arm.joints; ++i)
+    if (!model_.arm.prismatic[i]) cut_to_one_turn(range.lower_rad[i], range.upper_rad[i]);
   return range;
 }
 

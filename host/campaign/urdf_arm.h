@@ -15,6 +15,7 @@ class UrdfArm : public JudgeArm {
   ArmPose pose(const Joints& q_rad) const override;
   double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                    double within_m = sim::kNothingNear) const override;
+  double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const override;
   double controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const override;
   bool keeps_clear_of_itself(const ArmPose& pose) const override;
   Limits limits(const Family& family) const override;

@@ -35,8 +35,8 @@ class Rerun {
  public:
   explicit Rerun(const Config& config)
       : config_(config),
-        decoder_(*config.dialect, config.model.arm.joints),
-        gate_(std::make_unique<InputGate>(config.model.arm.joints, config.model.settings, InputSource::kRecording)),
+        decoder_(*config.dialect, config.model.arm),
+        gate_(std::make_unique<InputGate>(config.model.arm, config.model.settings, InputSource::kRecording)),
         encoder_(config.model.arm, *config.dialect),
         obstacles_(std::make_unique<Held<ObstacleSet>>()) {}
 
@@ -67,6 +67,7 @@ class Rerun {
       return "a cycle whose messages are missing or invalid";
     if (!put_obstacle_values(obstacles_->message)) return "obstacle values of wrong size";
     if (inputs.guide) inputs.guide = &arguments.guide;
+    if (inputs.other_joints.message) inputs.other_joints.message = &arguments.other_joints;
     if (found_.cycles++ == 0) state_ = arguments.state;
     const Result result = step(config_.model, state_, inputs, arguments.now_s);
     state_ = result.next;

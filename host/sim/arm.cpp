@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <kdl_parser/kdl_parser.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "firmware/model/load/urdf_file.h"
@@ -29,8 +30,9 @@ KDL::Frame frame_of(const urdf::Pose& pose) {
 
 class Arm::Builder {
  public:
-  Builder(Arm& arm, const std::string& file, const std::vector<std::string>& package_path)
-      : arm_(arm), file_(file), package_path_(package_path), model_(read_urdf(file)) {}
+  Builder(Arm& arm, const std::string& file, const std::vector<std::string>& package_path,
+          const std::map<std::string, double>& positions)
+      : arm_(arm), file_(file), package_path_(package_path), positions_(positions), model_(read_urdf(file)) {}
 
   void build(const std::string& base, const std::string& tip) {
     base_link_ = link_named(base);
@@ -43,8 +45,8 @@ class Arm::Builder {
     if (!kdl_parser::treeFromUrdfModel(*model_, tree_)) fail("KDL cannot convert it");
     KDL::Frame base_from_top;
     const urdf::Link* top = base_link_;
-    for (; is_fixed(*top); top = top->getParent().get()) {
-      base_from_top = base_from_top * segment_of(*top).pose(0.0).Inverse();
+    for (; is_placed(*top); top = top->getParent().get()) {
+      base_from_top = base_from_top * segment_of(*top).pose(position_of(*top).value_or(0.0)).Inverse();
     }
     add(*top, -1, top == base_link_);
     arm_.bodies_.front().base_from_body = base_from_top;
@@ -68,20 +70,58 @@ class Arm::Builder {
 
   bool on_chain(const urdf::Link& link) const { return std::count(chain_.begin(), chain_.end(), &link) > 0; }
 
-  // Adds a link and the links below it. Outside of the arm (the base and all links below it) only rigidly attached
-  // links count, because the positions of joints below the base are not available.
+  // The position of the joint above a link, where it was given, for the joint itself or the one that it mimics.
+  std::optional<double> position_of(const urdf::Link& link) const {
+    return link.parent_joint ? position_of(*link.parent_joint, 0) : std::nullopt;
+  }
+  std::optional<double> position_of(const urdf::Joint& joint, int depth) const {
+    if (const auto given = positions_.find(joint.name); given != positions_.end()) return given->second;
+    const auto master = joint.mimic && depth < 8 ? model_->getJoint(joint.mimic->joint_name) : nullptr;
+    const auto position = master ? position_of(*master, depth + 1) : std::nullopt;
+    if (!position) return {};
+    return joint.mimic->multiplier * *position + joint.mimic->offset;
+  }
+
+  bool is_placed(const urdf::Link& link) const { return is_fixed(link) || position_of(link); }
+
+  // Of a joint whose position was not given.
+  double default_position(const urdf::Joint& joint, int depth = 0) const {
+    const auto master = joint.mimic && depth < 8 ? model_->getJoint(joint.mimic->joint_name) : nullptr;
+    if (master) return joint.mimic->multiplier * default_position(*master, depth + 1) + joint.mimic->offset;
+    if (!joint.limits || joint.type == urdf::Joint::CONTINUOUS) return 0.0;
+    return std::max(joint.limits->lower, std::min(0.0, joint.limits->upper));
+  }
+
+  // Adds a link and the links below it. Outside of the arm (the base and all links below it) links count that are
+  // rigidly attached or behind a joint with a given position.
   void add(const urdf::Link& link, int parent, bool of_arm) {
     const int index = static_cast<int>(arm_.bodies_.size());
-    Body body{segment_of(link), parent, -1, parent >= 0 && arm_.bodies_[parent].moving, KDL::Frame::Identity()};
+    Body body{segment_of(link),       parent, -1, parent >= 0 ? arm_.bodies_[parent].chain_joints : 0,
+              KDL::Frame::Identity(), 0.0};
     if (on_chain(link) && !is_fixed(link)) {
       body.joint = arm_.joints_++;
-      body.moving = true;
+      ++body.chain_joints;
+      if (arm_.joints_ > kMaxJoints) fail(fmt::format("more than {} joints", kMaxJoints));
+      add_limits(*link.parent_joint);
+    } else if (link.parent_joint && !is_fixed(link)) {
+      body.position = position_of(link).value_or(default_position(*link.parent_joint));
     }
-    if (arm_.joints_ > kMaxJoints) fail(fmt::format("more than {} joints", kMaxJoints));
     arm_.bodies_.push_back(body);
     for (const auto& collision : link.collision_array) add_part(link, *collision, index);
     for (const auto& child : link.child_links) {
-      if (of_arm || is_fixed(*child)) add(*child, index, of_arm || child.get() == base_link_);
+      if (of_arm || is_placed(*child)) add(*child, index, of_arm || child.get() == base_link_);
+    }
+  }
+
+  void add_limits(const urdf::Joint& joint) {
+    double lower = -M_PI, upper = M_PI;
+    if (joint.limits && joint.type != urdf::Joint::CONTINUOUS && joint.limits->lower < joint.limits->upper &&
+        std::isfinite(joint.limits->upper - joint.limits->lower)) {
+      lower = joint.limits->lower, upper = joint.limits->upper;
+    }
+    for (auto [limits, value] : {std::pair{&arm_.lower_, lower}, std::pair{&arm_.upper_, upper}}) {
+      limits->conservativeResize(limits->size() + 1);
+      limits->tail<1>()[0] = value;
     }
   }
 
@@ -108,7 +148,8 @@ class Arm::Builder {
     if (!solid.size_m.allFinite() || bounding_radius_m(solid) > 100.0 || smallest_size_m(solid) <= 0.0) {
       fail(fmt::format("link '{}': a collision shape has a size out of range", link.name));
     }
-    arm_.parts_.push_back({link.name, solid, arm_.bodies_[body].moving});
+    const int chain_joints = arm_.bodies_[body].chain_joints;
+    arm_.parts_.push_back({link.name, solid, chain_joints, chain_joints > 0});
     arm_.mounts_.push_back({body, body_from_part});
   }
 
@@ -142,6 +183,7 @@ class Arm::Builder {
   Arm& arm_;
   std::string file_;
   std::vector<std::string> package_path_;
+  const std::map<std::string, double>& positions_;
   KDL::Tree tree_;
   urdf::ModelInterfaceSharedPtr model_;
   const urdf::Link* base_link_ = nullptr;
@@ -149,8 +191,8 @@ class Arm::Builder {
 };
 
 Arm::Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
-         const std::vector<std::string>& package_path) {
-  Builder builder(*this, urdf_file, package_path);
+         const std::vector<std::string>& package_path, const std::map<std::string, double>& joint_positions) {
+  Builder builder(*this, urdf_file, package_path, joint_positions);
   builder.build(base, tip);
   place(JointVector::Zero(joints_));
   bool finite = base_from_tool_.matrix().allFinite();
@@ -161,7 +203,7 @@ Arm::Arm(const std::string& urdf_file, const std::string& base, const std::strin
 void Arm::place(const JointVector& q_rad) {
   for (size_t i = 1; i < bodies_.size(); ++i) {
     Body& body = bodies_[i];
-    const double q = body.joint >= 0 ? q_rad[body.joint] : 0.0;
+    const double q = body.joint >= 0 ? q_rad[body.joint] : body.position;
     body.base_from_body = bodies_[body.parent].base_from_body * body.segment.pose(q);
   }
   for (size_t i = 0; i < parts_.size(); ++i) {
@@ -176,8 +218,9 @@ std::vector<JointAxis> Arm::axes() const {
     if (body.joint < 0) continue;
     const KDL::Frame& base_from_parent = bodies_[body.parent].base_from_body;
     const KDL::Vector origin = base_from_parent * body.segment.getJoint().JointOrigin();
+    const bool prismatic = body.segment.getJoint().getType() == KDL::Joint::TransAxis;
     const KDL::Vector direction = base_from_parent.M * body.segment.getJoint().JointAxis();
-    axes.push_back({{origin.x(), origin.y(), origin.z()}, {direction.x(), direction.y(), direction.z()}});
+    axes.push_back({{origin.x(), origin.y(), origin.z()}, {direction.x(), direction.y(), direction.z()}, prismatic});
   }
   return axes;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <kdl/tree.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace sidestep::sim {
 struct ArmPart {
   std::string link;
   Solid solid;
+  int body = 0;         ///< number of joints of the chain between base and link; links with the same cannot move apart
   bool moving = false;  ///< true when a joint of the chain moves it
   Eigen::Isometry3d base_from_part = Eigen::Isometry3d::Identity();
 };
@@ -22,20 +24,27 @@ struct ArmPart {
 struct JointAxis {
   Eigen::Vector3d origin_m;   ///< a point of the axis
   Eigen::Vector3d direction;  ///< unit
+  bool prismatic = false;     ///< the joint moves along the axis, not about it
 };
 
 /// The arm as its URDF describes it: forward kinematics and collision shapes. The links are those from base to tip,
-/// those below them (such as fingers; joints off the chain are at 0) and those that the base is rigidly attached to.
-/// Poses are in the frame of the base link. Independent of the kinematics of the controller.
+/// those below them (such as fingers) and those that carry the base. Joints off the chain have the given positions;
+/// without one a joint below the tip or a link of the chain is at 0 or at its limit nearest to 0, and what is behind
+/// any other joint is left out. Poses are in the frame of the base link. Independent of the kinematics of the
+/// controller.
 class Arm {
  public:
   /// Throws std::runtime_error, one line that names the file, when the URDF cannot be read, when base and tip do not
   /// bound a chain of 1 to kMaxJoints revolute, continuous or prismatic joints, or when a shape is not a cylinder,
   /// sphere, box or readable mesh (search path of meshes: firmware/model/load/mesh.h).
   Arm(const std::string& urdf_file, const std::string& base, const std::string& tip,
-      const std::vector<std::string>& package_path = {});
+      const std::vector<std::string>& package_path = {}, const std::map<std::string, double>& joint_positions = {});
 
   int joints() const { return joints_; }
+
+  /// Position limits of the joints in the URDF, rad or m; -pi and pi where it has none (or none that are a range).
+  const JointVector& lower() const { return lower_; }
+  const JointVector& upper() const { return upper_; }
 
   /// Computes the poses of all parts and of the tool in this configuration.
   void place(const JointVector& q_rad);
@@ -49,10 +58,11 @@ class Arm {
  private:
   struct Body {
     KDL::Segment segment;
-    int parent = -1;  ///< index of an earlier body
-    int joint = -1;   ///< index into q, -1: rigidly attached
-    bool moving = false;
+    int parent = -1;       ///< index of an earlier body
+    int joint = -1;        ///< index into q, -1: rigidly attached, or a joint off the chain
+    int chain_joints = 0;  ///< between base and this body
     KDL::Frame base_from_body;
+    double position = 0.0;  ///< of a joint off the chain
   };
   struct Mount {
     int body;
@@ -61,6 +71,7 @@ class Arm {
   class Builder;
 
   int joints_ = 0;
+  JointVector lower_, upper_;
   int tool_body_ = 0;
   std::vector<Body> bodies_;  ///< parents first
   std::vector<ArmPart> parts_;

@@ -13,6 +13,7 @@ ArmSetup load_arm_setup(const std::string& config_file) {
   read_channels(config.section("channels"), setup.channels);
   setup.world_from_base = read_world_from_base(neighbours);
   robot.texts("package_path", setup.package_path);
+  setup.joint_positions = robot.named_numbers("joint_positions", {-1e3, 1e3});
   setup.surroundings = read_surroundings(config);
   return setup;
 }

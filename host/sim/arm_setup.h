@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ArmSetup {
   Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();  ///< world: common frame of several arms
   std::vector<Obstacle> surroundings;                                 ///< at rest, base frame
   std::vector<std::string> package_path;                              ///< folders with the packages of meshes
+  std::map<std::string, double> joint_positions;                      ///< of joints that are no part of the chain
 };
 
 /// Reads the configuration; keys that the simulator does not need are ignored.

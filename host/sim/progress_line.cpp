@@ -83,10 +83,11 @@ void ProgressLine::show_running(const std::vector<const Row*>& arms, double dura
   const double t_s = arms.front()->t_s;
   std::string line = fmt::format("{} {:.2f}/{:.2f} s", bar(t_s / duration_s), t_s, duration_s);
   for (const Row* row : arms) {
-    line += fmt::format("  {}target {:.3f} m  clearance {:.3f} m  {}{}  cycle {:.0f} us",
-                        row->arm.empty() ? "" : row->arm + ": ", row->target_distance_m,
-                        std::min(row->nearest.clearance_m, row->neighbour_m), name_of(row->status.mode),
-                        foresight_text(row->status), row->status.cycle_time_s * 1e6);
+    const double clearance_m = std::min(row->nearest.clearance_m, row->neighbour_m);
+    line += fmt::format("  {}target {:.3f} m  {}  {}{}  cycle {:.0f} us", row->arm.empty() ? "" : row->arm + ": ",
+                        row->target_distance_m,
+                        clearance_m < kNothingNear ? fmt::format("clearance {:.3f} m", clearance_m) : "no obstacle",
+                        name_of(row->status.mode), foresight_text(row->status), row->status.cycle_time_s * 1e6);
   }
   show(line);
 }

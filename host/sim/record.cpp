@@ -39,7 +39,10 @@ std::string header(int joints, int obstacles) {
   for (int i = 1; i <= obstacles; ++i) {
     names += fmt::format(",o{0}_x_m,o{0}_y_m,o{0}_z_m,o{0}_axis_distance_m,o{0}_clearance_m", i);
   }
-  return names + ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s,neighbour_clearance_m\n";
+  names += ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s";
+  for (int i = 1; i <= Status{}.guide_tool_m.cols(); ++i)
+    names += fmt::format(",guide{0}_x_m,guide{0}_y_m,guide{0}_z_m", i);
+  return names + ",neighbour_clearance_m,self_clearance_m\n";
 }
 
 }  // namespace
@@ -49,6 +52,7 @@ void evaluate(Row& row, const Truth& truth) {
   row.target_distance_m = (row.world.target.motion.position_m - row.tool_m).norm();
   row.nearest = truth.nearest(row.world.all());
   row.axis_distance_m = truth.axis_distance_m(row.world.obstacles);
+  row.nearest_links = truth.nearest_links(kSelfRange_m);
 }
 
 CsvFile::CsvFile(const std::string& file, int joints, int obstacles) : file_(file), out_(file) {
@@ -66,7 +70,9 @@ void CsvFile::write(const Row& row, const Truth& truth) {
   }
   line.add(static_cast<double>(row.status.mode)).add(row.status.cycle_time_s);
   line.add(row.status.beta).add(row.status.damping);
-  line.add(row.status.foresight).add(row.status.guide_horizon_s).add(row.neighbour_m);
+  line.add(row.status.foresight).add(row.status.guide_horizon_s);
+  line.add(row.status.guide_tool_m.reshaped());
+  line.add(row.neighbour_m).add(row.nearest_links.clearance_m);
   out_ << line.end();
 }
 

@@ -9,6 +9,9 @@
 
 namespace sidestep::sim {
 
+/// Links farther apart are not measured: the search for contact costs little then, also between meshes.
+constexpr double kSelfRange_m = 0.05;
+
 /// The state at the start of one control period.
 struct Row {
   std::string arm;  ///< name among several arms
@@ -22,12 +25,14 @@ struct Row {
   Nearest nearest;
   double axis_distance_m = kNothingNear;
   double neighbour_m = kNothingNear;  ///< clearance to the links of other arms
+  NearestLinks nearest_links;         ///< of this arm, those closer than kSelfRange_m
 };
 
 /// Computes the tool position and the distances of the row. The truth must be in the configuration of the row.
 void evaluate(Row& row, const Truth& truth);
 
-/// One line per control period: time, joints, tool, target, distances, obstacles, controller; 17 significant digits.
+/// One line per control period: time, joints, tool, target, distances, obstacles, controller, other arms, the arm's own
+/// links (self_clearance_m: inf from kSelfRange_m on); 17 significant digits.
 /// The columns are named in the first line. cycle_time_s is the only one that differs between two equal lockstep runs.
 class CsvFile {
  public:

@@ -10,7 +10,8 @@ namespace sidestep::sim {
 Run::Run(const Scenario& scenario, const std::string& csv_file)
     : plant(scenario.plant, scenario.start_rad),
       scenario_(scenario),
-      truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip, scenario.robot.package_path)),
+      truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip, scenario.robot.package_path,
+                 scenario.robot.joint_positions)),
       summary_(scenario.period_us) {
   if (truth_.joints() != scenario.start_rad.size()) {
     throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,
@@ -23,9 +24,10 @@ Run::Run(const Scenario& scenario, const std::string& csv_file)
 void Run::receive(const ControllerMessage& message) {
   if (const auto* status = std::get_if<Status>(&message)) {
     status_ = *status;
-  } else if (const auto& command = std::get<Command>(message); plant.command(command.qd_radps)) {
-    summary_.add(command);
+    return;
   }
+  const auto& command = std::get<Command>(message);
+  if (plant.command(command.qd_radps)) summary_.add(command);
 }
 
 void Run::measure() {

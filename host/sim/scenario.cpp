@@ -23,7 +23,7 @@ std::string find(const YamlSection& section, const std::string& scenario_file, c
 
 RobotSource read_robot(YamlSection section, const std::string& scenario_file) {
   RobotSource robot{
-      find(section, scenario_file, "urdf", section.text("urdf")), section.text("base"), section.text("tip"), {}};
+      find(section, scenario_file, "urdf", section.text("urdf")), section.text("base"), section.text("tip"), {}, {}};
   section.finish();
   return robot;
 }
@@ -92,6 +92,7 @@ void read_arm(YamlSection& section, Scenario& scenario) {
   if (scenario.controller_config == kNoConfig) return;
   const ArmSetup setup = load_arm_setup(find(section, scenario.file, "config", scenario.controller_config));
   scenario.robot.package_path = setup.package_path;
+  scenario.robot.joint_positions = setup.joint_positions;
   scenario.channels = setup.channels;
   scenario.world_from_base = setup.world_from_base;
   scenario.world.surroundings = setup.surroundings;

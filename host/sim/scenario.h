@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct RobotSource {
   std::string urdf_file;  ///< path of the file that was found, see load_scenario
   std::string base;
   std::string tip;
-  std::vector<std::string> package_path;  ///< from the controller's configuration
+  std::vector<std::string> package_path;          ///< from the controller's configuration
+  std::map<std::string, double> joint_positions;  ///< from there, too
 };
 
 /// Bounds that must hold over a run; an absent one is not checked.

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "host/sim/arm.h"
+#include "host/sim/self_distance.h"
 #include "host/sim/world.h"
 
 namespace sidestep::sim {
@@ -18,11 +20,11 @@ struct Nearest {
   std::string link;
 };
 
-/// Distances between the arm, as its URDF describes it, and obstacles. Independent of the controller's kinematics and
-/// distances, which it checks.
+/// Distances between the arm, as its URDF describes it, and obstacles, and between its links. Independent of the
+/// controller's kinematics, distances and pairs of links, which it checks. Copies share what does not change.
 class Truth {
  public:
-  explicit Truth(Arm arm) : arm_(std::move(arm)) {}
+  explicit Truth(Arm arm) : arm_(std::move(arm)), self_(std::make_shared<SelfDistance>(arm_)) {}
 
   const Arm& arm() const { return arm_; }
   int joints() const { return arm_.joints(); }
@@ -35,6 +37,10 @@ class Truth {
   /// The closest pair of a link, moved by a joint or not, and an obstacle, among the pairs closer than within_m.
   /// Most obstacles cost only a comparison of bounding volumes.
   Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const;
+
+  /// The closest links that must not touch each other, among those closer than within_m (self_distance.h).
+  NearestLinks nearest_links(double within_m = kNothingNear) const { return self_->nearest(arm_, within_m); }
+  const SelfDistance& self_distance() const { return *self_; }
 
   /// The links as obstacles at rest, in the base frame of another arm.
   std::vector<Obstacle> links(const Eigen::Isometry3d& other_from_base) const;
@@ -52,6 +58,7 @@ class Truth {
 
  private:
   Arm arm_;
+  std::shared_ptr<const SelfDistance> self_;
 };
 
 }  // namespace sidestep::sim

@@ -24,6 +24,7 @@ static_assert(static_cast<int>(Mode::kFault) == controller_status_t::FAULT);
 static_assert(static_cast<int>(Shape::kSphere) == obstacle_t::SPHERE);
 static_assert(static_cast<int>(Shape::kCapsule) == obstacle_t::CAPSULE);
 static_assert(static_cast<int>(Shape::kBox) == obstacle_t::BOX);
+static_assert(static_cast<int>(Shape::kCylinder) == obstacle_t::CYLINDER);
 
 void copy(const Eigen::Vector3d& from, double (&to)[3]) {
   std::copy_n(from.data(), 3, to);
@@ -81,43 +82,41 @@ bool has_size_of_command(const uint8_t* bytes, int64_t size) {
   return joints >= 0 && size == empty_size + joints * kJointSize;
 }
 
-/// Sizes of the fixed parts of controller_status_t around its two texts, bytes.
-struct StatusLayout {
-  int64_t before_link;  ///< up to the length of nearest_link
-  int64_t between;      ///< from the end of nearest_link to the length of message
-  int64_t after_message;
-};
-
-/// From the encoding of a status in which all numbers are 0 and each text is one known letter.
-StatusLayout status_layout() {
+/// Sizes of the fixed parts of controller_status_t before, between and after its texts, bytes: from the encoding of a
+/// status in which all numbers are 0 and each text is one letter.
+std::vector<int64_t> sizes_around_texts() {
   constexpr int64_t kHashSize = 8, kTextSize = 2;  // the letter and the terminating zero
   controller_status_t status{};
-  status.nearest_link = "L";
-  status.message = "M";
+  status.nearest_link = status.message = status.self_links[0] = status.self_links[1] = "T";
   std::vector<uint8_t> bytes(static_cast<size_t>(status.getEncodedSize()));
   status.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  const auto position_of = [&](char letter) {
-    return std::find(bytes.begin() + kHashSize, bytes.end(), static_cast<uint8_t>(letter)) - bytes.begin();
-  };
-  const int64_t link_at = position_of('L'), message_at = position_of('M');
-  return {link_at - kLengthSize, message_at - kLengthSize - (link_at + kTextSize),
-          static_cast<int64_t>(bytes.size()) - (message_at + kTextSize)};
+  std::vector<int64_t> sizes;
+  auto from = bytes.begin();
+  for (auto text = std::find(from + kHashSize, bytes.end(), 'T'); text != bytes.end();
+       text = std::find(from, bytes.end(), 'T')) {
+    sizes.push_back(text - kLengthSize - from);
+    from = text + kTextSize;
+  }
+  sizes.push_back(bytes.end() - from);
+  return sizes;
 }
 
 bool has_size_of_status(const uint8_t* bytes, int64_t size) {
-  static const StatusLayout layout = status_layout();
-  if (size < layout.before_link + kLengthSize) return false;
-  const int64_t link_length = int32_at(bytes, layout.before_link);
-  const int64_t message_at = layout.before_link + kLengthSize + link_length + layout.between;
-  if (link_length < 1 || size < message_at + kLengthSize) return false;
-  const int64_t message_length = int32_at(bytes, message_at);
-  return message_length >= 1 && size == message_at + kLengthSize + message_length + layout.after_message;
+  static const std::vector<int64_t> fixed = sizes_around_texts();
+  int64_t at = fixed[0];
+  for (size_t text = 1; text < fixed.size(); ++text) {
+    if (size < at + kLengthSize) return false;
+    const int64_t length = int32_at(bytes, at);
+    if (length < 1) return false;
+    at += kLengthSize + length + fixed[text];
+  }
+  return size == at;
 }
 
 std::optional<Command> decode_command(const uint8_t* bytes, int size) {
   joint_command_t message;
   if (!has_size_of_command(bytes, size) || message.decode(bytes, 0, size) != size) return {};
-  Command command{message.utime, Eigen::VectorXd(message.num_joints), Eigen::VectorXd(message.num_joints)};
+  Command command{message.utime, message.seq, Eigen::VectorXd(message.num_joints), Eigen::VectorXd(message.num_joints)};
   std::copy(message.joint_velocity.begin(), message.joint_velocity.end(), command.qd_radps.data());
   std::copy(message.joint_position.begin(), message.joint_position.end(), command.q_rad.data());
   return command;
@@ -129,7 +128,7 @@ std::optional<Status> decode_status(const uint8_t* bytes, int size) {
   if (message.mode < controller_status_t::WAIT || message.mode > controller_status_t::FAULT) return {};
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
   std::replace_if(message.message.begin(), message.message.end(), is_control, ' ');
-  return Status{static_cast<Mode>(message.mode),
+  Status status{static_cast<Mode>(message.mode),
                 message.cycle_time,
                 message.beta,
                 message.damping,
@@ -138,6 +137,8 @@ std::optional<Status> decode_status(const uint8_t* bytes, int size) {
                 message.message,
                 message.foresight,
                 message.guide_horizon};
+  status.guide_tool_m = Eigen::Map<const Eigen::Matrix<double, 3, 8>>(&message.guide_tool[0][0]);
+  return status;
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ Solid solid_of(const ShapeSize& shape) {
   switch (shape.kind) {
     case ShapeKind::kCapsule:
       return {Shape::kCapsule, shape.size_m};
+    case ShapeKind::kCylinder:
+      return {Shape::kCylinder, shape.size_m};
     case ShapeKind::kBox:
       return {Shape::kBox, shape.size_m};
     case ShapeKind::kSphere:

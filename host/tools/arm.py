@@ -7,6 +7,7 @@ import numpy as np
 
 import runs
 import wire
+from errors import reason
 
 CONFIG = runs.ROOT / "firmware/config/lwa3.yaml"
 ROBOT = ("urdf", "base", "tip")
@@ -46,7 +47,9 @@ def parse(urdf, base, tip):
     """
     try:
         robot = ElementTree.parse(urdf).getroot()
-    except (OSError, ElementTree.ParseError) as error:
+    except OSError as error:
+        sys.exit(reason(error))
+    except ElementTree.ParseError as error:
         sys.exit(f"{urdf}: {error}")
     parents = {joint.find("child").get("link"): joint for joint in robot.findall("joint")}
     joints, link = [], tip
@@ -58,20 +61,38 @@ def parse(urdf, base, tip):
     return joints, {link.get("name"): link for link in robot.findall("link")}
 
 
+class Joint(NamedTuple):
+    """A joint's frame in the frame of its parent link, and its axis in its own frame."""
+    offset: np.ndarray    # 3, m
+    rotation: np.ndarray  # 3x3
+    axis: np.ndarray      # 3; None if fixed
+    prismatic: bool
+
+    def motion(self, q):
+        """(translation 3, rotation 3x3) of the child link at this position, rad or m."""
+        if self.axis is None:
+            return np.zeros(3), np.eye(3)
+        if self.prismatic:
+            return q * self.axis / np.linalg.norm(self.axis), np.eye(3)
+        return np.zeros(3), rotation_about(self.axis, q)
+
+
 def chain(urdf, base, tip):
-    """(offset 3, rotation 3x3, axis or None if fixed) of every joint from base to tip."""
-    return [(vector(joint, "origin", "xyz"), rotation_of_rpy(*vector(joint, "origin", "rpy")),
-             vector(joint, "axis", "xyz", (1, 0, 0)) if joint.get("type") in ("revolute", "continuous") else None)
+    """The Joint of every joint from base to tip."""
+    return [Joint(vector(joint, "origin", "xyz"), rotation_of_rpy(*vector(joint, "origin", "rpy")),
+                  None if joint.get("type") == "fixed" else vector(joint, "axis", "xyz", (1, 0, 0)),
+                  joint.get("type") == "prismatic")
             for joint in parse(urdf, base, tip)[0]]
 
 
 def link_poses(links, q_rad):
     """(position 3, rotation 3x3) in the base frame of the base and of every joint's child link; the tip is the last."""
-    position, rotation, angles = np.zeros(3), np.eye(3), iter(q_rad)
+    position, rotation, values = np.zeros(3), np.eye(3), iter(q_rad)
     poses = [(position, rotation)]
-    for offset, joint_rotation, axis in links:
-        position = position + rotation @ offset
-        rotation = rotation @ joint_rotation @ (np.eye(3) if axis is None else rotation_about(axis, next(angles)))
+    for joint in links:
+        translation, turn = joint.motion(0.0 if joint.axis is None else next(values))
+        position = position + rotation @ (joint.offset + joint.rotation @ translation)
+        rotation = rotation @ joint.rotation @ turn
         poses.append((position, rotation))
     return poses
 

@@ -7,8 +7,7 @@ import plots
 import runs
 import tradeoff
 
-SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in (
-    "paper-a", "paper-b", "paper-c", "parked-obstacle", "closing-gap", "pillar", "two-people", "moving-shelf")]
+SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in runs.scenario_names()]
 
 
 def draw(scenario_file):

@@ -16,8 +16,11 @@ TO_OTHER_ARMS = "least clearance to the other arms"
 
 
 def contact(run):
-    in_contact = np.flatnonzero(np.minimum(run.columns["clearance_m"], run.columns["neighbour_clearance_m"]) < 0)
-    return f"yes, at {run.columns['t_s'][in_contact[0]]:.2f} s" if in_contact.size else "no"
+    in_contact = np.flatnonzero(run.touching())
+    if not in_contact.size:
+        return "no"
+    first = in_contact[0]
+    return f"yes, {'links ' if run.touching_itself()[first] else ''}at {run.columns['t_s'][first]:.2f} s"
 
 
 def metres(value_m):
@@ -26,7 +29,7 @@ def metres(value_m):
 
 def column(run):
     """The results of one law, in the order of the table's rows."""
-    speeds = plots.family(run.columns, r"qd\d+_radps")
+    speeds = run.family(r"qd\d+_radps")
     return [metres(run.columns["axis_distance_m"].min()), plots.length(run.columns["target_distance_m"][-1]),
             metres(run.columns["clearance_m"].min()), metres(run.columns["neighbour_clearance_m"].min()),
             f"{np.abs(speeds).max():.2f} rad/s", contact(run)]

@@ -8,6 +8,7 @@ import time
 import lcm
 
 import wire
+from errors import reason
 
 
 def record(file, channels, lcm_url):
@@ -24,6 +25,7 @@ def record(file, channels, lcm_url):
             sys.exit(f"cannot subscribe to '{channel}': not a regular expression")
         subscription.set_queue_capacity(1000)
     log = lcm.EventLog(file, "w", overwrite=True)  # opened last, because it replaces an existing log
+    print(f"recording in {file}, Ctrl-C ends", flush=True)
     try:
         while True:
             wire.handle_messages(network)
@@ -43,7 +45,7 @@ def main():
     try:
         open(arguments.log, "ab").close()
     except OSError as error:
-        parser.error(str(error))
+        parser.error(reason(error))
     try:
         count = record(arguments.log, arguments.channels, arguments.lcm_url)
     except KeyboardInterrupt:

@@ -15,6 +15,7 @@ import lcm
 import arm
 import runs
 import wire
+from errors import reason
 
 FRAME_S = 0.03   # least time between two frames of the replay
 MOST_FRAMES = 4000
@@ -96,14 +97,14 @@ def curves(rows, joints):
             ("Joint angles, rad", joint_lines(rows, "joint_position", joints)),
             ("Joint speeds, rad/s", joint_lines(rows, "joint_velocity", joints)),
             ("Mode: 0 wait, 1 hold, 2 track, 3 brake, 4 fault", {"mode": status_line(rows, "mode")}),
-            ("CPU time of a cycle, us", {"time": status_line(rows, "cycle_time", 1e6)})]
+            ("CPU time of a whole cycle, us", {"time": status_line(rows, "cycle_time", 1e6)})]
 
 
 def data_of(log, robot, channels=None):
     if not log.is_file():
         raise NoRun(f"{log}: no such file")
     chain, shapes = arm.chain(*robot), arm.shapes(*robot)
-    joints = sum(axis is not None for _, _, axis in chain)
+    joints = sum(joint.axis is not None for joint in chain)
     rows = [row for row in samples(log, channels) if row[1]["ARM_STATE"].num_joints == joints]
     if not rows:
         raise NoRun(f"{log}: no CONTROLLER_STATUS after an ARM_STATE of {joints} joints")
@@ -145,7 +146,7 @@ def main():
         robot, channels = arm.robot_of(config, arguments), arm.channels_of(config)
         arguments.output.write_text(page(data_of(arguments.log, robot, channels)))
     except (NoRun, runs.RunFailed, OSError, ValueError) as error:
-        sys.exit(f"report.py: {error}")
+        sys.exit(f"report.py: {reason(error)}")
     print(f"wrote {arguments.output} ({arguments.output.stat().st_size / 1e6:.1f} MB)")
 
 

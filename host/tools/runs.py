@@ -1,6 +1,7 @@
 """Runs of build/controller with build/sim, and the results that they record."""
 import csv
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -12,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 import yaml
+
+from errors import reason
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build"
@@ -37,18 +40,50 @@ class Run(NamedTuple):
     scenario: dict
     columns: dict   # column name of the simulator's CSV -> array
     code: int       # exit code of the simulator: HELD or BROKEN
+    others: tuple = ()  # the runs of the other arms of the scenario
+
+    def family(self, pattern):
+        """The columns whose names match, N x count, in the order of their numbers."""
+        names = sorted((name for name in self.columns if re.fullmatch(pattern, name)),
+                       key=lambda name: int(re.search(r"\d+", name)[0]))
+        return np.stack([self.columns[name] for name in names], axis=1)
+
+    def path(self, what):
+        """N x 3, m, base frame: the positions of `tool`, `target`, `o1`, `guide1` ..."""
+        return np.stack([self.columns[f"{what}_{axis}_m"] for axis in "xyz"], axis=1)
+
+    def joints(self):
+        """N x joints, rad."""
+        return self.family(r"q\d+_rad")
+
+    def touching(self):
+        """Whether the arm touches an obstacle, another arm or itself, at every row."""
+        others_m = np.minimum(self.columns["clearance_m"], self.columns["neighbour_clearance_m"])
+        return (others_m < 0) | self.touching_itself()
+
+    def touching_itself(self):
+        """Whether two links of the arm touch each other, at every row."""
+        return self.columns["self_clearance_m"] <= 0
 
 
 def load(file):
     """A YAML file as a dict."""
     try:
         return yaml.safe_load(Path(file).read_text())
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise RunFailed(f"{file}: {' '.join(str(error).split())}") from None
+    except OSError as error:
+        raise RunFailed(reason(error)) from None
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        raise RunFailed(f"{file}: {reason(error)}") from None
+
+
+def scenario_names():
+    return sorted(file.stem for file in (ROOT / "host/scenarios").glob("*.yaml"))
 
 
 def load_scenario(file):
     """A scenario. Only the keys that the scripts use are checked; the simulator checks the others."""
+    if not Path(file).is_file():
+        raise RunFailed(f"{shown(Path(file))}: no such scenario; there are {', '.join(scenario_names())}")
     scenario = load(file)
     check(file, scenario, title=str, duration_s=(int, float))
     if "arms" in scenario:
@@ -175,8 +210,9 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
 def lockstep_runs(scenario_file, law, record, config=None):
     """One run in lockstep on its own LCM network. Returns a Run for each arm."""
     code = execute(scenario_file, law, record, config, private_url())
-    return [Run(file_of(arm, Path(scenario_file)).stem, law, arm, read_csv(file_of(arm, record)), code)
+    runs = [Run(file_of(arm, Path(scenario_file)).stem, law, arm, read_csv(file_of(arm, record)), code)
             for arm in arms_of(load_scenario(scenario_file))]
+    return [run._replace(others=tuple(other for other in runs if other is not run)) for run in runs]
 
 
 def lockstep_run(scenario_file, law, record, config=None):

@@ -9,6 +9,7 @@ import argparse
 
 import crowds
 import wire
+from errors import reason
 
 MOST = 4096  # the controller rejects a message with more obstacles
 
@@ -71,7 +72,9 @@ def main():
     except KeyError as error:
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:
-        parser.error(str(error))
+        parser.error(reason(error))
+    what = ("no obstacles (the empty set)" if most == 0 else "1 obstacle" if most == 1 else f"{most} obstacles")
+    print(f"sending {what} on OBSTACLES, 50 times a second; Ctrl-C ends", flush=True)
     send(crowd, arguments.lcm_url)
 
 

@@ -88,9 +88,22 @@ def parsed():
     return arguments
 
 
+def words_of(arguments):
+    """What is sent, for people."""
+    numbers = [f"{value:g}" for value in arguments.numbers]
+    point, velocity = " ".join(numbers[:3]), " ".join(numbers[3:])
+    if arguments.circle or arguments.figure_eight:
+        shape = f"a circle of {arguments.circle:g} m radius" if arguments.circle else (
+            f"a figure eight of {2 * arguments.figure_eight:g} m length")
+        return f"a target on {shape} about {point} m, once in {arguments.period:g} s"
+    return f"a target that starts at {point} m and moves at {velocity} m/s" if velocity else f"a target at {point} m"
+
+
 def main():
     arguments = parsed()
     position_m, velocity_mps, url = arguments.numbers[:3], arguments.numbers[3:] or [0.0] * 3, arguments.lcm_url
+    if not arguments.keys:
+        print(f"sending {words_of(arguments)} on TARGET, 50 times a second; Ctrl-C ends", flush=True)
     if arguments.keys:
         curses.wrapper(lambda screen: send(keys(screen, position_m), url))
     elif arguments.circle:

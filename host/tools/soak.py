@@ -87,8 +87,11 @@ def run_simulator(rng, controller, url, output, until_s, memory):
     finally:
         sim.send_signal(signal.SIGKILL)
         sim.wait()
-    clearance_m = runs.read_csv(record).get("clearance_m") if record.stat().st_size else None
-    return None if clearance_m is None else float(np.min(clearance_m))
+    columns = runs.read_csv(record) if record.stat().st_size else {}
+    if "clearance_m" not in columns:
+        return None
+    links_m = columns["self_clearance_m"]
+    return float(min(columns["clearance_m"].min(), np.where(links_m <= 0, links_m, np.inf).min()))
 
 
 def controller_config():

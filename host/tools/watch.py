@@ -8,14 +8,24 @@ import sys
 import wire
 
 PERIOD_S = 0.1
+STALE_S = 0.5          # a controller that is silent for longer is not running
+OLD_OBSTACLES_S = 0.1  # as timeouts.obstacles_s: older obstacles grow, and their clearance measures nothing
 CHANNELS = ["CONTROLLER_STATUS", "ARM_STATE", "TARGET", "OBSTACLES"]
-LIMITING = {name[len("LIMITING_"):].lower().replace("_", " "): getattr(wire.controller_status_t, name)
-            for name in dir(wire.controller_status_t) if name.startswith("LIMITING_")}
+
+
+def constants(prefix):
+    """Value -> name in words of the status constants with this prefix."""
+    kind = wire.controller_status_t
+    return dict(sorted((getattr(kind, name), name[len(prefix):].lower().replace("_", " ")) for name in dir(kind)
+                       if name.startswith(prefix)))
+
+
+FAULTS, LIMITS = constants("FAULT_"), constants("LIMITING_")
 
 
 def bar(value, full, width=30):
-    """A text bar of value / full; full as well for NaN and infinity."""
-    share = min(max(value / full, 0.0), 1.0) if math.isfinite(value) else 1.0
+    """A text bar of value / full; empty for NaN, full for infinity."""
+    share = 0.0 if math.isnan(value) else min(max(value / full, 0.0), 1.0)
     return "#" * round(share * width) + "." * (width - round(share * width))
 
 
@@ -31,28 +41,86 @@ def message_text(status):
     return "".join(letter if letter.isprintable() else "?" for letter in status.message)
 
 
-def brief(status):
-    return (f"{wire.MODES.get(status.mode, status.mode):5}  target {status.target_distance:6.3f} m  clearance "
-            f"{status.clearance:6.3f} m  cycle {status.cycle_time * 1e6:5.0f} us  {foresight_text(status)}  "
-            f"{message_text(status)}")
+def target_text(status):
+    return f"{status.target_distance:.3f} m" if math.isfinite(status.target_distance) else "no target"
 
 
-def lines(latest):
-    status, arm = latest.get("CONTROLLER_STATUS"), latest.get("ARM_STATE")
+def clearance_text(status, ages_s):
+    if ages_s.get("OBSTACLES", 0.0) > OLD_OBSTACLES_S or "obstacles are too old" in status.message:
+        return "unknown, the obstacles are too old"
+    if math.isnan(status.clearance):
+        return "unknown, no obstacles received yet"
+    return f"{status.clearance:.3f} m" if math.isfinite(status.clearance) else "no obstacles"
+
+
+def nearest_text(status):
+    """The link and the obstacle that the clearance is between; empty without obstacles."""
+    if status.nearest_obstacle == -1:
+        return ""
+    arm, link = divmod(-status.nearest_obstacle, 10000)  # docs/wire.md
+    other = (f"obstacle {status.nearest_obstacle}" if status.nearest_obstacle >= 0 else
+             f"link {link} of another arm" if arm else f"surroundings[{link - 2}]")
+    return f"{status.nearest_link} and {other}"
+
+
+def self_text(status):
+    """The two links of the arm that have the least room, and their distance; empty if it was not measured."""
+    if math.isnan(status.self_clearance):
+        return ""
+    return f"{' and '.join(status.self_links)} are {status.self_clearance * 1e3:.0f} mm apart"
+
+
+def limits_text(status):
+    return ", ".join(name for bit, name in LIMITS.items() if status.limiting & bit) or "nothing"
+
+
+def fault_text(status):
+    return FAULTS.get(status.fault, f"number {status.fault}")
+
+
+def stale_text(ages_s):
+    """Why there is nothing to show, or nothing current; empty while the controller is alive."""
+    age_s = ages_s.get("CONTROLLER_STATUS")
+    if age_s is None:
+        return "waiting for CONTROLLER_STATUS"
+    return f"stale for {age_s:.0f} s: the controller is silent" if age_s > STALE_S else ""
+
+
+def brief(status, ages_s):
+    parts = [f"{wire.MODES.get(status.mode, status.mode):5}", f"target {target_text(status)}",
+             f"clearance {clearance_text(status, ages_s)}", f"cycle {status.cycle_time * 1e6:.0f} us",
+             self_text(status) if status.limiting & status.LIMITING_SELF else "",
+             f"fault: {fault_text(status)}" if status.fault else "", foresight_text(status), message_text(status)]
+    return "  ".join(filter(None, parts))
+
+
+def joint_lines(arm, age_s):
+    if arm is None:
+        return ["no arm state received"]
+    joints = enumerate(zip(arm.joint_position, arm.joint_velocity), 1)
+    stale = [f"arm state: stale for {age_s:.0f} s"] if age_s > STALE_S else []
+    return stale + [f"joint {i:2} {q:8.3f} rad {qd:8.3f} rad/s" for i, (q, qd) in joints]
+
+
+def lines(latest, ages_s):
+    """latest: channel -> message; ages_s: channel -> s since that message."""
+    status, stale = latest.get("CONTROLLER_STATUS"), stale_text(ages_s)
     if status is None:
-        return ["waiting for CONTROLLER_STATUS"]
-    limits = ", ".join(name for name, bit in LIMITING.items() if status.limiting & bit) or "nothing"
+        return [stale]
+    clearance = clearance_text(status, ages_s)
     obstacles = latest["OBSTACLES"].num_obstacles if "OBSTACLES" in latest else "none received"
-    shown = [f"{wire.MODES.get(status.mode, status.mode)}   {foresight_text(status)}   {message_text(status)}", "",
-             f"to target {status.target_distance:8.3f} m  {bar(status.target_distance, 1.0)}",
-             f"clearance {status.clearance:8.3f} m  {bar(status.clearance, 0.5)}  {status.nearest_link}"
-             f" and obstacle {status.nearest_obstacle}",
-             f"cycle     {status.cycle_time * 1e6:8.0f} us {bar(status.cycle_time, 0.001)}  late "
-             f"{status.wake_latency * 1e6:.0f} us, {status.skipped_cycles} skipped", "",
-             f"limited by {limits}; fault {status.fault}; {status.rejected_messages} messages rejected",
-             f"obstacles {obstacles}; target {'received' if 'TARGET' in latest else 'none received'}", ""]
-    joints = zip(arm.joint_position, arm.joint_velocity) if arm else []
-    return shown + [f"joint {i + 1:2} {q:8.3f} rad {qd:8.3f} rad/s" for i, (q, qd) in enumerate(joints)]
+    mode = f"{wire.MODES.get(status.mode, status.mode)}   {foresight_text(status)}   {message_text(status)}"
+    return [f"{stale}; last: {mode}" if stale else mode, "",
+            f"to target  {target_text(status):>10}  {bar(status.target_distance, 1.0)}",
+            f"clearance  {clearance:>10}" + (f"  {bar(status.clearance, 0.5)}  {nearest_text(status)}"
+                                             if clearance.endswith(" m") else ""),
+            f"cycle      {status.cycle_time * 1e6:7.0f} us  {bar(status.cycle_time, 0.001)}  of CPU time, "
+            f"{status.wake_latency * 1e6:.0f} us late, {status.skipped_cycles} skipped", "",
+            f"limited by {limits_text(status)}; fault: {fault_text(status)}; {status.rejected_messages} messages "
+            "rejected",
+            f"links: {self_text(status) or 'distances not measured'}",
+            f"obstacles: {obstacles}; target: {'received' if 'TARGET' in latest else 'none received'}", "",
+            *joint_lines(latest.get("ARM_STATE"), ages_s.get("ARM_STATE", 0.0))]
 
 
 def dashboard(screen, latest):
@@ -61,16 +129,22 @@ def dashboard(screen, latest):
         latest.receive(PERIOD_S)
         screen.erase()
         height, width = screen.getmaxyx()
-        for row, text in enumerate(lines(latest)[:height]):
+        for row, text in enumerate(lines(latest, latest.ages_s())[:height]):
             screen.insnstr(row, 0, text, width)
         screen.refresh()
 
 
 def plain(latest):
+    """A line for every status; while the controller is silent one for every second."""
+    shown_s = 0
     while True:
         latest.receive(PERIOD_S)
+        ages_s = latest.ages_s()
         if status := latest.pop("CONTROLLER_STATUS", None):
-            print(brief(status), flush=True)
+            print(brief(status, ages_s), flush=True)
+        elif (stale := stale_text(ages_s)) and (silent_s := int(ages_s.get("CONTROLLER_STATUS", 0))) != shown_s:
+            print(stale, flush=True)
+            shown_s = silent_s
 
 
 def main():

@@ -11,10 +11,11 @@ import lcm
 
 # Appended, so that pydrake's own modules come first. Installed scripts find the types in their own folder.
 sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
-from sidestep import controller_status_t, joint_command_t, joint_state_t, obstacle_t, obstacles_t, target_t
+from sidestep import (controller_status_t, joint_command_t, joint_state_t, named_joints_t, obstacle_t, obstacles_t,
+                      target_t)
 
 TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,
-         "CONTROLLER_STATUS": controller_status_t}
+         "CONTROLLER_STATUS": controller_status_t, "OTHER_JOINTS": named_joints_t}
 MODES = {getattr(controller_status_t, name): name for name in ("WAIT", "HOLD", "TRACK", "BRAKE", "FAULT")}
 
 
@@ -66,7 +67,7 @@ def command_line():
 
 
 class LatestMessages(dict):
-    """Channel -> latest valid message. A channel without a message yet is missing.
+    """Channel -> latest valid message, and in `received_s` when it came. A channel without a message yet is missing.
 
     channels: a list of keys of TYPES, or a dict from channel name to key of TYPES.
     """
@@ -74,13 +75,19 @@ class LatestMessages(dict):
     def __init__(self, channels, lcm_url):
         super().__init__()
         self.network = connect(lcm_url)
+        self.received_s = {}  # monotonic clock
         self.kinds = channels if isinstance(channels, dict) else {channel: channel for channel in channels}
         for channel in self.kinds:
             self.network.subscribe(channel, self._store)
 
     def _store(self, channel, data):
         if (message := decoded(self.kinds[channel], data)) is not None:
-            self[channel] = message
+            self[channel], self.received_s[channel] = message, time.monotonic()
+
+    def ages_s(self):
+        """Channel -> s since its latest message."""
+        now_s = time.monotonic()
+        return {channel: now_s - received_s for channel, received_s in self.received_s.items()}
 
     def receive(self, duration_s):
         end = time.monotonic() + duration_s

@@ -10,7 +10,7 @@ from wire import obstacle_t
 
 KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "CONTROLLER_STATUS"]  # the messages that the view shows
 SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
-          "box": (obstacle_t.BOX, [])}
+          "cylinder": (obstacle_t.CYLINDER, ["radius_m", "height_m"]), "box": (obstacle_t.BOX, [])}
 
 
 def static_obstacle(settings, number):
@@ -61,7 +61,7 @@ class ArmView:
     def link_poses(self, latest):
         """The link poses, the tool last; None before the first arm state."""
         state = latest.get(self.names["ARM_STATE"])
-        if state is None or state.num_joints != sum(axis is not None for _, _, axis in self.chain):
+        if state is None or state.num_joints != sum(joint.axis is not None for joint in self.chain):
             return None
         return [(self.point(position), self.rotation @ rotation)
                 for position, rotation in arm.link_poses(self.chain, state.joint_position)]

@@ -21,6 +21,9 @@ def distance_m(obstacle, points):
     local = (points - np.array(obstacle.position)) @ arm.rotation_of_quaternion(obstacle.quaternion)
     if obstacle.shape == obstacle_t.BOX:
         return np.linalg.norm(np.maximum(np.abs(local) - np.array(obstacle.size) / 2, 0.0), axis=1)
+    if obstacle.shape == obstacle_t.CYLINDER:
+        across_m = np.maximum(np.linalg.norm(local[:, :2], axis=1) - obstacle.size[0], 0.0)
+        return np.hypot(across_m, np.maximum(np.abs(local[:, 2]) - obstacle.size[1] / 2, 0.0))
     half_m = obstacle.size[1] / 2 if obstacle.shape == obstacle_t.CAPSULE else 0.0
     local[:, 2] -= np.clip(local[:, 2], -half_m, half_m)
     return np.linalg.norm(local, axis=1) - obstacle.size[0]

@@ -20,7 +20,8 @@ TRAIL_BEADS = 120
 GUIDE_BEADS = 8  # length of controller_status_t.guide_tool
 HIDDEN = (np.array([0.0, 0.0, -1e4]), np.eye(3))
 KINDS = {"sphere": part_t.SPHERE, "cylinder": part_t.CYLINDER, "capsule": part_t.CAPSULE, "box": part_t.BOX}
-OBSTACLE_KINDS = {obstacle_t.SPHERE: ("sphere", 1), obstacle_t.CAPSULE: ("capsule", 2), obstacle_t.BOX: ("box", 3)}
+OBSTACLE_KINDS = {obstacle_t.SPHERE: ("sphere", 1), obstacle_t.CAPSULE: ("capsule", 2), obstacle_t.BOX: ("box", 3),
+                  obstacle_t.CYLINDER: ("cylinder", 2)}
 
 
 def arrowhead(length_m=0.05, radius_m=0.018, sides=12):

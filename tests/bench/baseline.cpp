@@ -21,7 +21,7 @@ void measure_all(const Model& model, const LinkPoses& poses, const ObstacleSet& 
     for (int o = 0; o < spheres.count; ++o)
       pairs.push_back(measure_pair(links[s], spheres.obstacles[static_cast<size_t>(o)].capsule));
   }
-  for (const auto& [a, b] : model.self_pairs) pairs.push_back(measure_pair(links[a], links[b]));
+  for (const SelfPair& pair : model.self_pairs) pairs.push_back(measure_pair(links[pair.first], links[pair.second]));
 }
 
 /// The least distance of the moving links to the spheres, without nearest points; one square root a pair.

@@ -171,7 +171,7 @@ void print_scene(const Scene& scene) {
 }  // namespace
 
 int main() {
-  std::printf("CPU time of one control cycle, us; ratios of step() as median / mean\n");
+  std::printf("CPU time of a hot step, us; ratios of step() as median / mean\n");
   std::printf("%-11s %5s  %-13s %9s %9s %9s %9s  %19s  %14s  %s\n", "spheres", "", "", "median", "mean", "p99", "max",
               "times distance only", "times baseline", "clearance / law / shield, %");
   for (const int spheres : {10, 50, 500, 4096}) {

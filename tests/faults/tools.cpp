@@ -43,6 +43,15 @@ void coordinates_are_sent_as_they_were_typed(void**) {
 void impossible_requests_are_refused_in_one_line(void**) {
   passes("refusals");
 }
+void senders_say_what_they_send(void**) {
+  passes("announcements");
+}
+void the_error_about_an_unknown_scenario_lists_the_scenarios(void**) {
+  passes("unknown_scenario");
+}
+void a_silent_controller_is_shown_as_stale_and_no_value_as_a_word(void**) {
+  passes("watched_texts");
+}
 void hostile_bytes_are_not_decoded(void**) {
   passes("hostile_bytes");
 }
@@ -62,6 +71,11 @@ int main() {
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(senders_say_what_they_send, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(the_error_about_an_unknown_scenario_lists_the_scenarios,
+                                sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,
+                                sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_not_decoded, sidestep::test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,6 +1,8 @@
 // Benchmark scenes, fixed by family and seed, in which earlier versions of the controller failed.
 #include "firmware/io/config/config.h"
 #include "host/campaign/scene_maker.h"
+#include "host/campaign/search/finding_file.h"
+#include "host/campaign/search/search_trial.h"
 #include "host/campaign/trial.h"
 #include "host/campaign/trial_controller.h"
 #include "tests/support/check.h"
@@ -48,12 +50,37 @@ void foresight_arrives_without_contact(void**) {
   }
 }
 
+void check_findings(const std::string& family, int count) {
+  const Model model = load_config("firmware/config/lwa3.yaml", {}).model;
+  for (int i = 1; i <= count; ++i) {
+    const std::string file = "tests/data/search/" + family + "-" + std::to_string(i) + ".yaml";
+    const SearchScene scene = load_proven_scene(file).scene;
+    const std::unique_ptr<TrialController> controller = make_controller(&model, lwa3_arm(), model.arm.limits);
+    const double clearance_m = run_search_trial(scene, *controller).clearance_m;
+    check(clearance_m > 0.0, "%s: %g m", file.c_str(), clearance_m);
+  }
+}
+
+/// Findings of `campaign --search rest --obstacles 3`: the shield alone evades one obstacle after the other until a
+/// link is between two of them.
+void an_arm_at_rest_retreats_before_obstacles_trap_it(void**) {
+  check_findings("rest", 5);
+}
+
+/// Findings of `campaign --search track --obstacles 3`: a retreat that was ended by the first forecast without a
+/// collision was begun again too late.
+void an_arm_at_its_target_retreats_until_the_danger_is_over(void**) {
+  check_findings("track", 9);
+}
+
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(there_is_no_contact_with_or_without_foresight),
       cmocka_unit_test(foresight_arrives_without_contact),
+      cmocka_unit_test(an_arm_at_rest_retreats_before_obstacles_trap_it),
+      cmocka_unit_test(an_arm_at_its_target_retreats_until_the_danger_is_over),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

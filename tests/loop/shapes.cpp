@@ -121,17 +121,42 @@ void a_person_walking_past_is_never_touched(void**) {
   check(figures.final_distance_m < 0.01, "%g m from the target in the end", figures.final_distance_m);
 }
 
-/// No message contains the table. The target is inside it.
-void a_table_in_the_configuration_is_never_touched(void**) {
+/// No message contains the table. The target is inside it, and the arm comes near it.
+void check_table(const char* name, const std::vector<Obstacle>& table) {
   Model model = test::lwa3_model("sidestep");
-  model.surroundings = {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))};
+  model.surroundings = table;
   ClosedLoop loop(model, test::home_rad());
-  loop.target.position_m = Vector3(-0.7, 0.1, 0.34);  // in the table
+  loop.target.position_m = Vector3(-0.7, 0.1, 0.34);
   loop.sends_target = true;
   const Figures figures = simulate(loop, 6.0, [](double) {});
-  print_message("table: %.1f mm\n", figures.least_m * 1e3);
+  print_message("%s: %.1f mm\n", name, figures.least_m * 1e3);
   check(figures.least_m > 0.0, "%g m", figures.least_m);
   check(figures.least_m < 0.03, "the arm never came near the table: %g m", figures.least_m);
+}
+
+void a_table_in_the_configuration_is_never_touched(void**) {
+  check_table("table", {box_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), Vector3(0.7, 1.2, 0.04))});
+}
+
+/// A thick disc on a column: an enclosing capsule would keep the arm 0.3 m away from its flat top.
+void a_round_table_is_never_touched(void**) {
+  check_table("round table", {cylinder_obstacle(Vector3(-0.8, 0, 0.35), Matrix3::Identity(), 0.4, 0.06),
+                              cylinder_obstacle(Vector3(-0.8, 0, 0.16), Matrix3::Identity(), 0.05, 0.32)});
+}
+
+/// A barrel rolls past on its side, turning about its own axis, and a plate tumbles.
+void rolling_and_tumbling_cylinders_never_touch_the_arm(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  const Matrix3 on_its_side = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitY()).toRotationMatrix();
+  Obstacle& barrel = add(loop, cylinder_obstacle(Vector3(-0.7, -1.8, 0.6), on_its_side, 0.15, 0.5));
+  barrel.velocity_mps = Vector3(0, 0.5, 0);
+  barrel.angular_velocity_radps = Vector3(-0.5 / 0.15, 0, 0);
+  Obstacle& plate = add(loop, cylinder_obstacle(Vector3(-0.4, 1.6, 0.9), Matrix3::Identity(), 0.2, 0.02));
+  plate.velocity_mps = Vector3(0, -0.4, 0);
+  plate.angular_velocity_radps = Vector3(0, 1.5, 0);
+  const Figures figures = simulate(loop, 8.0, [](double) {});
+  print_message("barrel and plate: %.1f mm\n", figures.least_m * 1e3);
+  check(figures.least_m > 0.0, "%g m", figures.least_m);
 }
 
 /// The arm keeps clear of surroundings from the start, but it does not track before the first obstacle set.
@@ -156,6 +181,8 @@ int main() {
       cmocka_unit_test(a_revolving_door_never_touches_the_arm),
       cmocka_unit_test(a_person_walking_past_is_never_touched),
       cmocka_unit_test(a_table_in_the_configuration_is_never_touched),
+      cmocka_unit_test(a_round_table_is_never_touched),
+      cmocka_unit_test(rolling_and_tumbling_cylinders_never_touch_the_arm),
       cmocka_unit_test(surroundings_do_not_replace_the_first_obstacle_set),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

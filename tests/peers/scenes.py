@@ -27,7 +27,8 @@ def contacts(arm, arguments):
         played = list(csv.DictReader(rows.open()))
     if len(played) != arguments.count:
         sys.exit(f"{arm}: {len(played)} scenes in the results")
-    return [f"{row['family']}:{row['seed']}" for row in played if float(row["clearance_m"]) < 0.0]
+    return [f"{row['family']}:{row['seed']}" for row in played
+            if float(row["clearance_m"]) < 0.0 or float(row["self_clearance_m"]) <= 0.0]
 
 
 def main():

@@ -16,7 +16,8 @@ ClosedLoop::ClosedLoop(const Model& the_model, const JointVector& start_rad)
     : model(the_model),
       commands(model.arm.limits, model.settings.period_s()),
       arm{0, start_rad, JointVector::Zero(start_rad.size())},
-      obstacles(std::make_unique<ObstacleSet>()) {}
+      obstacles(std::make_unique<ObstacleSet>()),
+      others(model.arm.other_positions) {}
 
 template <typename Message>
 void ClosedLoop::Sent<Message>::send(const Message& now, double now_s) {
@@ -31,7 +32,10 @@ Inputs ClosedLoop::receive() {
   if (sends_arm_state) sent_arm_.send(arm, now_s());
   if (sends_target) sent_target_.send(target, now_s());
   if (sends_obstacles) sent_obstacles_.send(*obstacles, now_s());
-  return {sent_arm_.latest, sent_target_.latest, sent_obstacles_.latest, skipped, stop};
+  if (sends_others) sent_others_.send(others, now_s());
+  Inputs inputs{sent_arm_.latest, sent_target_.latest, sent_obstacles_.latest, skipped, stop};
+  inputs.other_joints = sent_others_.latest;
+  return inputs;
 }
 
 void ClosedLoop::follow(const Result& result) {

@@ -25,7 +25,9 @@ class ClosedLoop {
   ArmState arm;  ///< present state; follows the commands, rests without them
   Target target;
   std::unique_ptr<ObstacleSet> obstacles;
-  bool sends_arm_state = true, sends_target = false, sends_obstacles = true;  ///< which messages are sent
+  OtherJoints others;  ///< of the joints outside the chain; at first as configured
+  bool sends_arm_state = true, sends_target = false, sends_obstacles = true,
+       sends_others = false;  ///< which messages are sent
   bool stop = false;
   int skipped = 0;
   int64_t arm_clock_offset_us = 0;
@@ -62,6 +64,7 @@ class ClosedLoop {
   Sent<ArmState> sent_arm_;
   Sent<Target> sent_target_;
   Sent<ObstacleSet> sent_obstacles_;
+  Sent<OtherJoints> sent_others_;
 };
 
 /// The LWA3 at home without obstacles, with a target 20 cm away that is not sent yet.

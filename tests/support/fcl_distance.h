@@ -28,6 +28,11 @@ inline SolidAtPose solid_at_pose(const Box& box) {
 }
 
 inline SolidAtPose solid_at_pose(const Obstacle& obstacle) {
+  if (obstacle.shape == Shape::kCylinder) {
+    SolidAtPose placed = solid_at_pose(obstacle.capsule);
+    placed.solid.shape = sim::Shape::kCylinder;
+    return placed;
+  }
   return obstacle.shape == Shape::kBox ? solid_at_pose(box_of(obstacle)) : solid_at_pose(obstacle.capsule);
 }
 

@@ -60,26 +60,46 @@ def messages(row, utime):
     return {"TARGET": target, "OBSTACLES": obstacles, "ARM_STATE": arm}
 
 
+def send(network, row, utime):
+    for channel, message in messages(row, utime).items():
+        network.publish(channel, message.encode())
+
+
 def step(network, replies, row, utime):
     """Runs one cycle and returns the commanded joint velocity."""
     replies.clear()
-    for channel, message in messages(row, utime).items():
-        network.publish(channel, message.encode())
-    end = time.monotonic() + 5.0
-    while "CONTROLLER_STATUS" not in replies:
-        network.handle_timeout(100)
-        if time.monotonic() > end:
-            sys.exit("law_over_lcm: no reply from the controller")
+    send(network, row, utime)
+    if not answered(network, replies, 5.0):
+        sys.exit("law_over_lcm: no reply from the controller")
     return np.array(joint_command_t.decode(replies["ARM_COMMAND"]).joint_velocity)
 
 
+def answered(network, replies, limit_s):
+    end = time.monotonic() + limit_s
+    while "CONTROLLER_STATUS" not in replies and time.monotonic() < end:
+        network.handle_timeout(20)
+    return "CONTROLLER_STATUS" in replies
+
+
+def wait_until_it_listens(network, replies, row):
+    """Sends the first row until the controller, which starts meanwhile, answers; returns the time of the last one."""
+    for utime in range(PERIOD_US, 100 * PERIOD_US, PERIOD_US):
+        send(network, row, utime)
+        if answered(network, replies, 0.3):
+            while network.handle_timeout(200):  # replies to earlier tries
+                pass
+            return utime
+    sys.exit("law_over_lcm: the controller does not start")
+
+
 def compare(network, rows):
-    replies, utime, worst = {}, PERIOD_US, 0.0
+    replies, worst = {}, 0.0
     network.subscribe("ARM_COMMAND|CONTROLLER_STATUS", replies.__setitem__)
+    start = utime = wait_until_it_listens(network, replies, rows[0])
     for row in [rows[0]] * CYCLES_TO_TRACK + rows:
         utime += PERIOD_US
         velocity = step(network, replies, row, utime)
-        if utime > (CYCLES_TO_TRACK + 1) * PERIOD_US:
+        if utime > start + CYCLES_TO_TRACK * PERIOD_US:
             mode = controller_status_t.decode(replies["CONTROLLER_STATUS"]).mode
             if mode != controller_status_t.TRACK:
                 sys.exit(f"law_over_lcm: mode {mode} instead of TRACK")
@@ -97,7 +117,6 @@ def main():
         command = [ROOT / "build/controller", "--config", file.name, "--law", "paper", "--lockstep", "--lcm-url", url]
         controller = subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=ROOT)
         try:
-            time.sleep(0.5)
             worst = compare(lcm.LCM(url), rows)
         finally:
             controller.terminate()

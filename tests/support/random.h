@@ -36,11 +36,14 @@ class Random {
     for (int i = 0; i < count; ++i) v[i] = uniform(lower, upper);
     return v;
   }
-  /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi.
+  /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi except for a
+  /// prismatic joint.
   JointVector configuration(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {
-      const double lower = std::max(arm.limits.lower_rad[i], -M_PI), upper = std::min(arm.limits.upper_rad[i], M_PI);
+      const double turn_rad = arm.prismatic[i] ? HUGE_VAL : M_PI;
+      const double lower = std::max(arm.limits.lower_rad[i], -turn_rad);
+      const double upper = std::min(arm.limits.upper_rad[i], turn_rad);
       const double middle = 0.5 * (lower + upper), half = 0.5 * share * (upper - lower);
       q_rad[i] = uniform(middle - half, middle + half);
     }

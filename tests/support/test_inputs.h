@@ -12,7 +12,10 @@ class TestInputs {
  public:
   TestInputs(int joints, const Settings& settings, const Dialect& dialect = kSidestepDialect,
              const Neighbours& neighbours = {})
-      : inputs_(settings, joints, dialect, neighbours, false) {}
+      : TestInputs(arm_with(joints), settings, dialect, neighbours) {}
+  TestInputs(const Arm& arm, const Settings& settings, const Dialect& dialect = kSidestepDialect,
+             const Neighbours& neighbours = {})
+      : arm_model_(arm), inputs_(settings, arm_model_, dialect, neighbours, false) {}
 
   /// Whether the message was accepted; then `value` is its value.
   bool receive(const void* bytes, size_t size, double now_s, ArmState& value) {
@@ -20,6 +23,9 @@ class TestInputs {
   }
   bool receive(const void* bytes, size_t size, double now_s, Target& value) {
     return receive_value(bytes, size, now_s, target_, value);
+  }
+  bool receive(const void* bytes, size_t size, double now_s, OtherJoints& value) {
+    return receive_value(bytes, size, now_s, other_joints_, value);
   }
   bool receive(const void* bytes, size_t size, double now_s, ObstacleSet& value) {
     return receive_part(0, bytes, size, now_s, value);
@@ -46,9 +52,17 @@ class TestInputs {
     return true;
   }
 
+  static Arm arm_with(int joints) {
+    Arm arm;
+    arm.joints = joints;
+    return arm;
+  }
+
+  const Arm arm_model_;
   NetworkInputs inputs_;
   Received<ArmState> arm_;
   Received<Target> target_;
+  Received<OtherJoints> other_joints_;
   std::unique_ptr<Received<ObstacleSet>> obstacles_ = std::make_unique<Received<ObstacleSet>>();
 };
 

@@ -27,6 +27,7 @@ import runs
 import send_obstacles
 import send_target
 import view
+import watch
 import wire
 from arm_view import ArmView
 
@@ -66,10 +67,11 @@ def tracks():
 
 
 def clearances():
-    """The clearance that colours a drawing is correct for the upright LWA3 and a sphere, a capsule and a box."""
+    """The clearance that colours a drawing is correct for the upright LWA3 and a sphere, a capsule, a box and cylinders."""
     link_poses = arm.link_poses(arm.chain(*LWA3), [0.0] * 7)
     shapes = arm.shapes(*LWA3)
-    for shape, size, expected in ((0, [0.1], 0.35), (1, [0.1, 1.0], 0.35), (2, [0.4, 0.4, 2.0], 0.25)):
+    for shape, size, expected in ((0, [0.1], 0.35), (1, [0.1, 1.0], 0.35), (2, [0.4, 0.4, 2.0], 0.25),
+                                  (3, [0.1, 1.0], 0.35), (3, [0.4, 0.02], 0.05)):
         obstacle = crowds.obstacle(1, shape, size, [0.5, 0, 0.5], [0, 0, 0])
         nearest = min(geometry.clearance_m(one, link_poses[one.frame], [obstacle]) for one in shapes)
         assert math.isclose(nearest, expected, abs_tol=5e-3), (shape, nearest)
@@ -129,8 +131,8 @@ def log_replays():
         log, _ = logged_run(Path(name))
         copy = Path(name) / "copy.lcmlog"
         recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", copy, "--lcm-url", url],
-                                    stdout=subprocess.DEVNULL)
-        time.sleep(1.0)
+                                    stdout=subprocess.PIPE)
+        recorder.stdout.readline()  # it listens
         subprocess.run(["lcm-logplayer", "--lcm-url", url, log], check=True, timeout=60, stdout=subprocess.DEVNULL)
         time.sleep(0.5)
         recorder.send_signal(signal.SIGINT)
@@ -143,10 +145,25 @@ def log_replays():
 def sent(script, *words):
     """The first value that a script with these arguments sends."""
     values = []
-    with mock.patch.multiple(script, send=lambda motion, _url: values.append(motion(0.0))), \
+    with contextlib.redirect_stdout(io.StringIO()), \
+            mock.patch.multiple(script, send=lambda motion, _url: values.append(motion(0.0))), \
             mock.patch.object(sys, "argv", ["", *words]):
         script.main()
     return values[0]
+
+
+def announcements():
+    """The senders say what they send."""
+    for script, words, said in ((send_target, ["0.1", "0.2", "-1", "--circle", "0.3"],
+                                 "sending a target on a circle of 0.3 m radius about 0.1 0.2 -1 m, once in 8 s on T"),
+                                (send_target, ["1", "0", "1", "0", "0", ".1"], "at 1 0 1 m and moves at 0 0 0.1 m/s"),
+                                (send_obstacles, ["1,0,1,.1"], "sending 1 obstacle on OBSTACLES, 50 times a second"),
+                                (send_obstacles, [], "sending no obstacles (the empty set)")):
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output), mock.patch.multiple(script, send=lambda _motion, _url: None), \
+                mock.patch.object(sys, "argv", ["", *words]):
+            script.main()
+        assert said in output.getvalue() and output.getvalue().count("\n") == 1, output.getvalue()
 
 
 def refusal(script, *words):
@@ -204,9 +221,49 @@ def refusals():
                 (view, ["--config", nonsense], 1, f"{nonsense}: mapping")):
             result = refusal(script, *words)
             assert result[0] == code and reason in result[1] and "\n" not in result[1], (words, result)
+            assert "Errno" not in result[1], result
         assert log.read_text() == "old"
         robot = dict(urdf="arm.urdf", base="base", tip="tool")
         assert arm.robot_of(no_robot, argparse.Namespace(**robot)) == tuple(robot.values())
+
+
+def unknown_scenario():
+    """The error about a scenario that does not exist lists those that do."""
+    try:
+        runs.load_scenario(ROOT / "host/scenarios/nope.yaml")
+        assert False
+    except runs.RunFailed as error:
+        assert str(error).startswith("host/scenarios/nope.yaml: no such scenario; there are closing-gap,"), error
+
+
+def watched_texts():
+    """watch.py tells a silent controller from a living one, and has words for what is no number."""
+    status = wire.controller_status_t()
+    status.mode, status.message, status.nearest_obstacle = status.FAULT, "fault: no arm state", -1
+    status.target_distance, status.clearance, status.fault = math.nan, -15.0, status.FAULT_ARM_STATE_LOST
+    status.limiting = status.LIMITING_SHIELD | status.LIMITING_NOT_REALTIME
+    status.self_clearance = math.nan
+    latest, ages_s = {"CONTROLLER_STATUS": status}, {"CONTROLLER_STATUS": 0.02, "OBSTACLES": 7.5}
+    for shown in ("\n".join(watch.lines(latest, ages_s)), watch.brief(status, ages_s)):
+        for part in ("FAULT", "no target", "unknown, the obstacles are too old", "fault: arm state lost"):
+            assert part in shown, (part, shown)
+        assert not re.search(r"nan|inf\b|-1|stale", shown), shown
+    assert "limited by shield, not realtime;" in "\n".join(watch.lines(latest, ages_s))
+    assert watch.lines(latest, {"CONTROLLER_STATUS": 3.2})[0].startswith("stale for 3 s: the controller is silent")
+    assert watch.lines({}, {}) == ["waiting for CONTROLLER_STATUS"]
+    status.self_clearance, status.self_links = math.nan, ["", ""]
+    assert "links: distances not measured" in watch.lines(latest, ages_s)
+    status.limiting, status.self_clearance, status.self_links = status.LIMITING_SELF, 0.0123, ["forearm", "hand"]
+    for shown in ("\n".join(watch.lines(latest, ages_s)), watch.brief(status, ages_s)):
+        assert "forearm and hand are 12 mm apart" in shown, shown
+    for clearance_m, text in ((0.1234, "0.123 m"), (math.inf, "no obstacles"), (math.nan, "unknown, no obstacles")):
+        status.clearance = clearance_m
+        assert watch.clearance_text(status, {}).startswith(text)
+    status.nearest_link = "hand"
+    for number, text in ((-1, ""), (7, "hand and obstacle 7"), (-3, "hand and surroundings[1]"),
+                         (-20004, "hand and link 4 of another arm")):
+        status.nearest_obstacle = number
+        assert watch.nearest_text(status) == text, watch.nearest_text(status)
 
 
 def hostile_bytes():
@@ -221,7 +278,7 @@ def hostile_bytes():
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
                                               surroundings, log_becomes_page, log_replays, coordinates,
-                                              refusals, hostile_bytes)}
+                                              refusals, announcements, unknown_scenario, watched_texts, hostile_bytes)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/model/joint_axes.h"
+#include "firmware/model/turning_proximity.h"
 
 namespace sidestep {
 namespace {
@@ -13,6 +14,12 @@ constexpr double kShortestPass_s = 0.05;
 
 /// An obstacle whose path passes the link's axis within this distance can be passed on either side.
 constexpr double kTwoSides_m = 0.08;
+
+/// A body that turns less while the arm brakes meets obstacles where it is nearest now.
+constexpr double kLeastTurn_rad = 0.01;
+
+/// A row that is violated by less is met.
+constexpr double kViolated_mps = 1e-4;
 
 /// The least value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {
@@ -28,13 +35,15 @@ bool is_within(const VelocityRange& inner, const VelocityRange& outer) {
          (inner.upper_radps.array() <= outer.upper_radps.array()).all();
 }
 
-/// Puts a row into a full list in place of the least urgent one, if it is more urgent. Urgency: the violation by the
-/// worst velocity of the range.
+/// Puts a row into a full list in place of the least urgent one, if it is more urgent. Urgency: the tier, then the
+/// violation by the worst velocity of the range.
 void replace_least_urgent(const VelocityRange& range, const ConstraintRow& row, ConstraintRows& rows) {
-  const auto urgency_mps = [&](const ConstraintRow& r) { return r.bound - least_mps(r.row, range); };
-  const auto least = std::min_element(rows.begin(), rows.end(),
-                                      [&](const auto& a, const auto& b) { return urgency_mps(a) < urgency_mps(b); });
-  if (urgency_mps(*least) < urgency_mps(row)) *least = row;
+  const auto violation_mps = [&](const ConstraintRow& r) { return r.bound - least_mps(r.row, range); };
+  const auto is_less_urgent = [&](const ConstraintRow& a, const ConstraintRow& b) {
+    return a.tier != b.tier ? a.tier > b.tier : violation_mps(a) < violation_mps(b);
+  };
+  const auto least = std::min_element(rows.begin(), rows.end(), is_less_urgent);
+  if (is_less_urgent(*least, row)) *least = row;
 }
 
 void add(const VelocityRange& range, const JointVector& row, double bound, Tier tier, double other_bound,
@@ -70,6 +79,12 @@ double hard_barrier(const ShieldSettings& settings, const ShieldInput& input, co
   return std::max(by_gain_mps, std::min(closing_mps, 0.0) - braked_mps);
 }
 
+/// The room of two links. A posture that is nearer than the clearance may come no nearer, but it need not retreat
+/// unless it is nearer than half of it.
+double self_room_m(double distance_m, double clearance_m) {
+  return std::max(distance_m - clearance_m, std::min(distance_m - 0.5 * clearance_m, 0.0));
+}
+
 /// Computes the rows of one cycle.
 class RowMaker {
  public:
@@ -78,16 +93,27 @@ class RowMaker {
       : settings_(settings),
         input_(input),
         axes_(input.poses),
+        braking_s_(braking_s(input)),
         sustainable_(sustainable),
         range_(range),
         within_(is_within(range, sustainable)),
         rows_(rows) {}
 
-  void add_self(int a, int b) {
-    const Proximity pair = measure_pair(input_.clearance.links[a], input_.clearance.links[b]);
-    const JointVector row = axes_.row(input_.arm.shapes[a].body, pair.on_arm, pair.normal) -
-                            axes_.row(input_.arm.shapes[b].body, pair.on_obstacle, pair.normal);
-    add_hard(row, least_mps(row, sustainable_), pair.distance_m - settings_.self_clearance_m, 0.0);
+  void add_self(const SelfPair& self, const JointVector& nominal_radps) {
+    const LinkShape &a = input_.arm.shapes[self.first], &b = input_.arm.shapes[self.second];
+    const auto& links = input_.clearance.links;
+    const Proximity pair =
+        measure_pair(PosedShape{a, input_.poses, links[self.first]}, PosedShape{b, input_.poses, links[self.second]});
+    const JointVector row =
+        axes_.row(a.body, pair.on_arm, pair.normal) - axes_.row(b.body, pair.on_obstacle, pair.normal);
+    const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
+    const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
+                                      pair.normal.dot(closing_mps));
+    rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
+    const double room_m = pair.distance_m - self.clearance_m;
+    if (!(room_m < least_room_m_)) return;
+    least_room_m_ = room_m;
+    rows_.nearest_links = {self.first, self.second, pair.distance_m};
   }
 
   void add_distance(const NearPair& pair) {
@@ -103,8 +129,25 @@ class RowMaker {
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     add_hard(row, least, distance_m - settings_.hard_clearance_m, threat_mps);
+    if (input_.comfort_weight == 0.0) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
+  }
+
+  void add_turning(const NearPair& pair) {
+    const Obstacle& reported = input_.obstacles.at(pair.now.obstacle);
+    if (reported.capsule.is_sphere()) return;
+    const Vector3 turn_rad = braking_s_ * (angular_velocity(body_of(pair)) - reported.angular_velocity_radps);
+    if (turn_rad.norm() < kLeastTurn_rad) return;
+    const PosedShape link{input_.arm.shapes[pair.now.shape], input_.poses, input_.clearance.links[pair.now.shape]};
+    const Obstacle present = input_.obstacles.extrapolated(pair.now.obstacle);
+    for (const Proximity& next : proximities_after_turn(link, present, pair.now, turn_rad)) {
+      if (next.distance_m > settings_.range_m) continue;
+      const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
+      const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
+      add_hard(row, least_mps(row, sustainable_), next.distance_m - settings_.hard_clearance_m,
+               std::min(approaching_mps, 0.0));
+    }
   }
 
   void add_pass(const NearPair& pair) {
@@ -127,15 +170,34 @@ class RowMaker {
   }
 
  private:
+  /// The time that the arm takes to stop, s.
+  static double braking_s(const ShieldInput& input) {
+    return (input.last_velocity_radps.array().abs() / input.arm.limits.acceleration_radps2.array()).maxCoeff();
+  }
+  /// Of a body, by the last commanded velocity, rad/s.
+  Vector3 angular_velocity(int body) const {
+    Vector3 sum_radps = Vector3::Zero();
+    for (int i = 0; i < body; ++i)
+      if (!input_.arm.prismatic[i]) sum_radps += input_.last_velocity_radps[i] * input_.poses.rotation[i + 1].col(2);
+    return sum_radps;
+  }
+
+  /// Velocity of a point of a shape by the joints outside the chain, m/s.
+  Vector3 other_velocity(const LinkShape& shape, const Vector3& point) const {
+    if (shape.other_joint < 0) return Vector3::Zero();
+    return other_velocity_at(input_.arm, input_.poses, shape.other_joint, point);
+  }
   int body_of(const NearPair& pair) const { return input_.arm.shapes[pair.now.shape].body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
-  void add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
+  /// Returns the bound.
+  double add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
     const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
     const bool counts = bound_mps > least;
     if (counts) add(sustainable_, row, bound_mps, Tier::kHard, 0.0, rows_.plan);
-    if (within_ && !counts) return;
+    if (within_ && !counts) return bound_mps;
     if (bound_mps > least_mps(row, range_)) add(range_, row, bound_mps, Tier::kHard, 0.0, rows_.step);
+    return bound_mps;
   }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
     bound_mps = std::min(bound_mps, kLargestDemand_mps);
@@ -155,21 +217,24 @@ class RowMaker {
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const JointAxes axes_;
+  const double braking_s_;
   const VelocityRange& sustainable_;
   const VelocityRange& range_;
   const bool within_;  ///< range_ lies in sustainable_: then the least value of a row is no smaller there
   RowSets& rows_;
+  double least_room_m_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
 RowSets make_rows(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
-                  const VelocityRange& range) {
+                  const VelocityRange& range, const JointVector& nominal_radps) {
   RowSets rows;
   RowMaker maker(settings, input, sustainable, range, rows);
-  for (const auto& [a, b] : input.self_pairs) maker.add_self(a, b);
+  for (const SelfPair& pair : input.self_pairs) maker.add_self(pair, nominal_radps);
   for (const NearPair& pair : input.clearance.near) {
     maker.add_distance(pair);
+    maker.add_turning(pair);
     maker.add_pass(pair);
   }
   return rows;

@@ -19,7 +19,11 @@ namespace sidestep {
 ///   linearly from 1 to 0 while m rises from hard_clearance to pass_clearance: an obstacle that will pass is no threat.
 ///   v_stop(r) is the largest speed that can be braked within r, one period of travel included, at the deceleration
 ///   1/2 sum over joints j of |a_j| * acceleration limit_j. The other half is left for other rows.
-///   For a pair of links r = d - self_clearance and v = 0.
+///   For a pair of links with the clearance c, r = d - c; 0 if d is from c / 2 to c, and d - c / 2 below; k = 1, and v
+///   is the speed at which joints outside the chain (another arm, a lift) bring the two together.
+///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
+///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
+///   obstacle's speed does not count in these.
 /// pass: for an approaching obstacle; n, J_p and a are those at the time t.
 ///     b = (pass_clearance - m) / max(t - pass_reaction, 0.05 s)    if m < pass_clearance
 ///     b = -pass_gain (m - pass_clearance)                          otherwise
@@ -42,18 +46,20 @@ struct ConstraintRow {
 
 constexpr int kMaxRows = 56;
 
-/// The rows that some velocity within the range violates. If there are more than kMaxRows, those with the largest
-/// b - min (a q') over the range are kept; the tier does not count in this.
+/// The rows that some velocity within the range violates. If there are more than kMaxRows, a hard row is kept before a
+/// pass row, a pass row before a comfort row, and within a tier those with the largest b - min (a q') over the range.
 using ConstraintRows = BoundedList<ConstraintRow, kMaxRows>;
 
-/// The rows of the two programmes of a cycle.
+/// The rows of the two programmes of a cycle, and what was found on the way.
 struct RowSets {
   ConstraintRows plan;  ///< all tiers, within the sustainable range
   ConstraintRows step;  ///< the hard tier, within the range of the coming period
+  NearestLinks nearest_links;
+  bool links_limit = false;  ///< the nominal velocity violates the hard row of a pair of links
 };
 
-/// The rows of all near pairs (clearance.near) and self pairs.
+/// The rows of all near pairs (clearance.near) and self pairs. nominal_radps: n x 1, decides links_limit alone.
 RowSets make_rows(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
-                  const VelocityRange& range);
+                  const VelocityRange& range, const JointVector& nominal_radps);
 
 }  // namespace sidestep

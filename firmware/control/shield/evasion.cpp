@@ -23,9 +23,21 @@ struct Threats {
   double last_s = 0.0;
 };
 
+/// The obstacles of the pairs with the least distances, by index into the ObstacleView.
+BoundedList<int, kMaxThreats> most_urgent_obstacles(const Clearance& clearance) {
+  const auto less = [](const NearPair* a, const NearPair* b) { return a->least_distance_m() < b->least_distance_m(); };
+  BoundedList<const NearPair*, kMaxNear> pairs;
+  for (const NearPair& pair : clearance.near) pairs.add(&pair);
+  std::sort(pairs.begin(), pairs.end(), less);
+  BoundedList<int, kMaxThreats> urgent;
+  for (const NearPair* pair : pairs)
+    if (!urgent.is_full() && std::find(urgent.begin(), urgent.end(), pair->now.obstacle) == urgent.end())
+      urgent.add(pair->now.obstacle);
+  return urgent;
+}
+
 Threats find_threats(const ShieldSettings& settings, const Clearance& clearance, const ObstacleView& view) {
   Threats threats;
-  BoundedList<int, kMaxThreats> known;
   double least_m = settings.pass_clearance_m;
   for (const NearPair& pair : clearance.near) {
     const ClosestApproach& approach = pair.approach;
@@ -34,10 +46,8 @@ Threats find_threats(const ShieldSettings& settings, const Clearance& clearance,
       least_m = approach.distance_m;
       threats.closest_s = approach.time_s;
     }
-    if (known.is_full() || std::find(known.begin(), known.end(), pair.now.obstacle) != known.end()) continue;
-    known.add(pair.now.obstacle);
-    threats.obstacles.add(view.extrapolated(pair.now.obstacle));
   }
+  for (const int index : most_urgent_obstacles(clearance)) threats.obstacles.add(view.extrapolated(index));
   return threats;
 }
 
@@ -77,7 +87,9 @@ class RolloutCost {
   double cost(const JointVector& velocity_radps, double bound) {
     const JointVector difference = velocity_radps - objective_.nominal_radps;
     const double tool = (objective_.tool_jacobian * difference).squaredNorm();
-    const double distance = 0.5 * (difference.squaredNorm() + objective_.tool_weight * tool);
+    const double joints2 =
+        objective_.scale ? difference.cwiseQuotient(*objective_.scale).squaredNorm() : difference.squaredNorm();
+    const double distance = 0.5 * (joints2 + objective_.tool_weight * tool);
     if (distance >= bound) return distance;
     const double rounding_m = 1e-9;
     const double most_m = (bound - distance) / kDeficitWeight_per_m + rounding_m;
@@ -93,7 +105,7 @@ class RolloutCost {
     for (int i = 0, step = worst_step_; i < rollout.size() && least_m >= enough_m;
          ++i, step = (step + 1) % rollout.size()) {
       const double after_s = (step + 1) * kStep_s;
-      const LinkPoses poses = forward_kinematics(input_.arm, rollout[step]);
+      const LinkPoses poses = forward_kinematics(input_.arm, rollout[step], *input_.poses.others);
       const double clearance_m =
           clearance_after(input_.arm, poses, threats_.obstacles.begin(), threats_.obstacles.size(), after_s, least_m);
       if (clearance_m < least_m) worst_step_ = step;
@@ -110,25 +122,29 @@ class RolloutCost {
   int worst_step_;
 };
 
-/// Indices of the first pass rows whose obstacle can be passed on either side.
-struct TwoSidedRows {
-  int count = 0;
-  std::array<int, kMaxTwoSidedRows> rows;
-};
+/// Indices of the pass rows whose obstacle can be passed on either side; of too many, those with the largest bounds.
+using TwoSidedRows = BoundedList<int, kMaxTwoSidedRows>;
 
 TwoSidedRows find_two_sided(const ConstraintRows& rows) {
   TwoSidedRows found;
-  for (int i = 0; i < rows.size() && found.count < kMaxTwoSidedRows; ++i)
-    if (rows[i].other_bound > 0.0) found.rows[found.count++] = i;
+  const auto less = [&](int a, int b) { return rows[a].bound < rows[b].bound; };
+  for (int i = 0; i < rows.size(); ++i) {
+    if (rows[i].other_bound <= 0.0) continue;
+    if (!found.is_full()) {
+      found.add(i);
+    } else if (int* least = std::min_element(found.begin(), found.end(), less); less(*least, i)) {
+      *least = i;
+    }
+  }
   return found;
 }
 
 /// The rows with the other passing side wherever the bit of a two-sided row is set.
 ConstraintRows with_sides(const ConstraintRows& rows, const TwoSidedRows& two_sided, int sides) {
   ConstraintRows changed = rows;
-  for (int i = 0; i < two_sided.count; ++i) {
+  for (int i = 0; i < two_sided.size(); ++i) {
     if (!(sides >> i & 1)) continue;
-    ConstraintRow& row = changed[two_sided.rows[i]];
+    ConstraintRow& row = changed[two_sided[i]];
     row.row = -row.row;
     std::swap(row.bound, row.other_bound);
   }
@@ -160,7 +176,7 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
     consider(input.evasion_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps), kPreviousEvasionFactor);
   consider(planned_radps, 1.0);
   const TwoSidedRows two_sided = find_two_sided(rows);
-  for (int sides = 1; sides < 1 << two_sided.count; ++sides)
+  for (int sides = 1; sides < 1 << two_sided.size(); ++sides)
     consider(solve(with_sides(rows, two_sided, sides), range, objective).velocity_radps, 1.0);
   for (int joint = 0; joint < input.arm.joints; ++joint) {
     for (const double speed : {range.lower_radps[joint], range.upper_radps[joint]}) {

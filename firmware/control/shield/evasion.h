@@ -9,15 +9,17 @@ namespace sidestep {
 ///
 /// Rollout: the arm changes from the last commanded velocity to that of the candidate at its acceleration limits and
 /// keeps it, in steps of 70 ms. The obstacles of the near pairs move at constant velocity. At most 16 obstacles take
-/// part: those that come first in Clearance::near, whose order means nothing. The rollout ends 0.2 s after the latest
-/// time of closest approach among the near pairs that come closer than pass_clearance. Pairs of links are not examined.
+/// part: those whose pairs have the least distances, now or at the closest approach. The rollout ends 0.2 s after the
+/// latest time of closest approach among the near pairs that come closer than pass_clearance. Pairs of links are not
+/// examined.
 ///
 /// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance.
 ///
 /// Candidates:
 ///   - the plan, and the evasion of the previous cycle
 ///   - the solutions of the programme with other passing sides. At most 4 two-sided rows (constraint_rows.h) are
-///     considered. Each of them keeps its side or changes it; that gives up to 15 programmes besides that of the plan
+///     considered, those with the largest b. Each of them keeps its side or changes it; that gives up to 15 programmes
+///     besides that of the plan
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
 ///
 /// Cost: the joint and tool terms of the objective (QpObjective), plus 1e4 per metre by which the rollout falls short

@@ -6,12 +6,14 @@
 
 namespace sidestep {
 
-/// The objective of the programme in shield.h: 1/2 |q' - u|^2 + w/2 |J (q' - u)|^2 + sum of 1/2 (s_t / sigma_t)^2.
+/// The objective of the programme in shield.h: 1/2 |S^-1 (q' - u)|^2 + w/2 |J (q' - u)|^2 + sum of 1/2 (s_t /
+/// sigma_t)^2.
 struct QpObjective {
-  const JointVector& nominal_radps;   ///< u, n x 1
-  const TaskJacobian& tool_jacobian;  ///< J, 3 x n or 6 x n
-  double tool_weight;                 ///< w, 1/m2
-  double comfort_weight;              ///< 1 / sigma_comfort^2, s2/m2
+  const JointVector& nominal_radps;    ///< u, n x 1
+  const TaskJacobian& tool_jacobian;   ///< J, 3 x n or 6 x n
+  double tool_weight;                  ///< w, 1/m2
+  double comfort_weight;               ///< 1 / sigma_comfort^2, s2/m2
+  const JointVector* scale = nullptr;  ///< the diagonal of S, n x 1 (Arm::joint_scale); null: all 1
 };
 
 struct QpSolution {

@@ -6,14 +6,16 @@ namespace sidestep {
 
 ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps) {
-  const RowSets rows = make_rows(settings, input, sustainable, range);
-  const QpObjective to_nominal{nominal_radps, tool_jacobian, settings.tool_weight, input.comfort_weight};
+  const RowSets rows = make_rows(settings, input, sustainable, range, nominal_radps);
+  const JointVector* scale = input.arm.prismatic.any() ? &input.arm.joint_scale : nullptr;
+  const QpObjective to_nominal{nominal_radps, tool_jacobian, settings.tool_weight, input.comfort_weight, scale};
   const QpSolution nearest = solve(rows.plan, sustainable, to_nominal);
   const Plan plan = evade(settings, input, rows.plan, sustainable, to_nominal, nearest.velocity_radps);
 
-  const QpObjective to_plan{plan.velocity_radps, tool_jacobian, 0.0, input.comfort_weight};
+  const QpObjective to_plan{plan.velocity_radps, tool_jacobian, 0.0, input.comfort_weight, scale};
   const QpSolution safe = solve(rows.step, range, to_plan);
-  return {safe.velocity_radps, safe.hard_slack_mps, nearest.failed || safe.failed, plan};
+  return {safe.velocity_radps, safe.hard_slack_mps, nearest.failed || safe.failed, plan,
+          rows.nearest_links,  rows.links_limit};
 }
 
 }  // namespace sidestep

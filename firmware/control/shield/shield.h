@@ -1,6 +1,6 @@
 #pragma once
 
-#include <utility>
+#include <limits>
 #include <vector>
 
 #include "firmware/control/types/settings.h"
@@ -17,7 +17,7 @@ struct ShieldInput {
   const JointVector& last_velocity_radps;  ///< last commanded
   const Clearance& clearance;
   const ObstacleView& obstacles;
-  const std::vector<std::pair<int, int>>& self_pairs;
+  const std::vector<SelfPair>& self_pairs;
   const JointVector& evasion_radps;  ///< the evasion chosen in the previous cycle; size 0: none
   double period_s;
   double comfort_weight;  ///< weight of the comfort tier in this cycle, s2/m2
@@ -30,22 +30,31 @@ struct Plan {
   bool evading = false;
 };
 
+/// The pair of links with the least room: the distance above its clearance.
+struct NearestLinks {
+  int first = -1, second = -1;  ///< indices into Arm::shapes; -1: there is no pair
+  double distance_m = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct ShieldResult {
   JointVector velocity_radps;   ///< for the coming period, within `range`
   double hard_slack_mps = 0.0;  ///< largest s_hard of the second programme; up to 1e-4 all hard rows count as met
   bool failed = false;          ///< the solver failed in one of the two programmes: rest took the place of its solution
   Plan plan;
+  NearestLinks nearest_links;
+  bool links_limit = false;  ///< the nominal velocity violates the hard row of a pair of links
 };
 
 /// The safety filter (a quadratic programme with control barrier functions): the joint velocity q' nearest to the
 /// nominal velocity u that keeps the clearances.
 ///
-///   min   1/2 |q' - u|^2 + w/2 |J (q' - u)|^2 + sum over tiers t of 1/2 (s_t / sigma_t)^2
+///   min   1/2 |S^-1 (q' - u)|^2 + w/2 |J (q' - u)|^2 + sum over tiers t of 1/2 (s_t / sigma_t)^2
 ///   s.t.  a_i q' + s_t(i) >= b_i    every constraint row i, of tier t(i)      (constraint_rows.h; at most 56 rows)
 ///         s_t >= 0                  one slack for all rows of a tier, m/s
 ///         l <= q' <= h              the range of joint velocities             (model/velocity_range.h)
 ///
-///   u        nominal joint velocity, n x 1, rad/s
+///   u        nominal joint velocity, n x 1, rad/s (prismatic joints: m/s)
+///   S        diag(Arm::joint_scale): 0.25 m/s of a prismatic joint weigh as much as 1 rad/s
 ///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m
 ///   w        ShieldSettings::tool_weight, 1/m2: this term makes the arm avoid obstacles in the null space of the
 ///            tool's task where that is possible

@@ -140,9 +140,26 @@ QpSolution solve_sized(const ConstraintRows& rows, const VelocityRange& range, c
   return solution;
 }
 
+/// The programme with the unknowns S^-1 q', in which the joints' weights are equal. S consists of powers of two, so
+/// that nothing is rounded.
+QpSolution solve_scaled(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
+  const JointVector& scale = *objective.scale;
+  ConstraintRows scaled_rows = rows;
+  for (ConstraintRow& row : scaled_rows) row.row = row.row.cwiseProduct(scale);
+  TaskJacobian jacobian = objective.tool_jacobian;
+  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) jacobian.col(i) *= scale[i];
+  const JointVector nominal = objective.nominal_radps.cwiseQuotient(scale);
+  QpSolution solution =
+      solve(scaled_rows, {range.lower_radps.cwiseQuotient(scale), range.upper_radps.cwiseQuotient(scale)},
+            {nominal, jacobian, objective.tool_weight, objective.comfort_weight});
+  solution.velocity_radps = solution.velocity_radps.cwiseProduct(scale);
+  return solution;
+}
+
 }  // namespace
 
 QpSolution solve(const ConstraintRows& rows, const VelocityRange& range, const QpObjective& objective) {
+  if (objective.scale) return solve_scaled(rows, range, objective);
   if (const auto exact = solve_small_active_set(rows, range, objective)) return *exact;
   constexpr int kCommonJoints = 7, kSmall = 12, kMedium = 28;
   if (objective.nominal_radps.size() > kCommonJoints) return solve_sized<kMaxJoints, kMaxRows>(rows, range, objective);

@@ -4,6 +4,7 @@
 
 #include "firmware/control/types/guide.h"
 #include "firmware/control/types/messages.h"
+#include "firmware/model/other_joints.h"
 
 namespace sidestep {
 
@@ -27,6 +28,7 @@ struct Inputs {
   bool stop = false;                     ///< the process has been asked to end: brake
   double foreign_command_s = -HUGE_VAL;  ///< when another controller's command for this arm was last received
   const Guide* guide = nullptr;          ///< from foresight; null without foresight
+  Latest<OtherJoints> other_joints{};    ///< positions of all joints outside the chain; without: Arm::other_positions
 };
 
 }  // namespace sidestep

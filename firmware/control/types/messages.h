@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// The inputs and outputs of a control cycle as values. Their wire formats are in lcmtypes/.
+/// The inputs and outputs of a control cycle as values. Their wire formats are in lcmtypes/. Joint values are in rad
+/// and rad/s, or m and m/s for a prismatic joint.
 
 /// The measured arm. utime is the sender's clock in microseconds.
 struct ArmState {
@@ -50,6 +51,7 @@ enum Limiting : int32_t {
   kLimitingLate = 64,
   kLimitingNoBlackbox = 1024,
   kLimitingShieldFailed = 2048,
+  kLimitingSelf = 4096,
 };
 
 }  // namespace sidestep

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "firmware/control/types/settings.h"
@@ -13,8 +12,8 @@ namespace sidestep {
 struct Model {
   Arm arm;
   Settings settings;
-  std::vector<std::pair<int, int>> self_pairs;  ///< pairs of Arm::shapes that must keep clear of each other
-  std::vector<Obstacle> surroundings;           ///< static obstacles from the configuration file, base frame
+  std::vector<SelfPair> self_pairs;
+  std::vector<Obstacle> surroundings;  ///< static obstacles from the configuration file, base frame
 };
 
 }  // namespace sidestep

@@ -58,7 +58,7 @@ struct ShieldSettings {
   double comfort_weight = 1000.0;     ///< s2/m2
   double tool_weight =
       60.0;  ///< w of the programme: cost of tool velocity error relative to joint velocity error, 1/m2
-  double self_clearance_m = 0.02;  ///< between two links
+  double self_clearance_m = 0.02;  ///< between two links, at most (load/self_pairs.h)
   double range_m = 0.4;            ///< pairs farther apart, now and within pass_horizon_s, are ignored
 };
 
@@ -105,7 +105,8 @@ struct Settings {
   bool bounds_target_speed = true;   ///< of the target's own velocity (extrapolation.h); false with the paper's law
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
   bool bridges_outliers = true;      ///< false in rollouts: a state out of reach is a jump there, never an outlier
-  double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint (command_stream.h)
+  double following_error_rad = 0.5;  ///< tolerated |measured - commanded position| per joint; times
+                                     ///< Arm::joint_scale for a prismatic one (command_stream.h)
 
   double period_s() const { return 1.0 / rate_hz; }
 };

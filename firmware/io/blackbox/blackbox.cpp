@@ -91,6 +91,7 @@ bool Blackbox::record(RecordKind kind, const Received<Message>& received) {
 void Blackbox::record(const LatestInputs& latest, const RecordedCycle& cycle) {
   record(RecordKind::kArmState, latest.arm);
   record(RecordKind::kTarget, latest.target);
+  record(RecordKind::kOtherJoints, latest.other_joints);
   const Received<ObstacleSet>& obstacles = latest.obstacles;
   const ObstacleSet& set = obstacles.message;
   if (record(RecordKind::kObstacles, obstacles) && (set.remembered > 0 || obstacles.bytes.empty()))

@@ -72,6 +72,8 @@ class Log {
     write_new(channels_.arm_state, arguments.inputs.arm, messages, RecordKind::kArmState);
     write_new(channels_.target, arguments.inputs.target, messages, RecordKind::kTarget);
     write_obstacles(arguments.inputs.obstacles, messages);
+    if (messages[static_cast<size_t>(RecordKind::kOtherJoints)].size > 0)
+      write_new(channels_.other_joints, arguments.inputs.other_joints, messages, RecordKind::kOtherJoints);
     StepArgumentsImage image;
     to_image(arguments, image);
     write(kStepArgumentsChannel, arguments.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});

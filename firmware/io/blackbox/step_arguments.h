@@ -13,7 +13,8 @@ struct StepArguments {
   double now_s = 0.0;
   Inputs inputs;
   State state;
-  Guide guide;  ///< what inputs.guide points at, if anything
+  Guide guide;               ///< what inputs.guide points at, if anything
+  OtherJoints other_joints;  ///< what inputs.other_joints.message points at, if anything
 };
 
 /// The arguments as stored in a log, after a checksum.

@@ -10,6 +10,7 @@
 #include "firmware/io/config/surroundings.h"
 #include "firmware/io/config/yaml_section.h"
 #include "firmware/model/load/self_pairs.h"
+#include "firmware/model/load/srdf.h"
 
 namespace sidestep {
 namespace {
@@ -22,10 +23,18 @@ constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};  // check_limits() deci
 // which a test compares.
 
 void read_limits(YamlSection limits, Arm& arm) {
-  limits.per_joint("velocity_radps", arm.joints, arm.limits.velocity_radps, kAnyNumber);
-  limits.per_joint("acceleration_radps2", arm.joints, arm.limits.acceleration_radps2, kAnyNumber);
-  limits.per_joint("lower_rad", arm.joints, arm.limits.lower_rad, kAnyNumber);
-  limits.per_joint("upper_rad", arm.joints, arm.limits.upper_rad, kAnyNumber);
+  // One number for all joints is in rad: prismatic joints keep what the URDF says.
+  const auto read = [&](const char* key, JointVector& values) {
+    const JointVector of_urdf = values;
+    limits.per_joint(key, arm.joints, values, kAnyNumber);
+    if (!limits.is_list(key))
+      for (int i = 0; i < arm.joints; ++i)
+        if (arm.prismatic[i]) values[i] = of_urdf[i];
+  };
+  read("velocity_radps", arm.limits.velocity_radps);
+  read("acceleration_radps2", arm.limits.acceleration_radps2);
+  read("lower_rad", arm.limits.lower_rad);
+  read("upper_rad", arm.limits.upper_rad);
   limits.finish();
   try {
     check_limits(arm);
@@ -131,12 +140,11 @@ void read_obstacles(YamlSection obstacles, Settings& settings) {
 void check_channels_are_unique(const YamlSection& root, const Config& config) {
   const Channels& channels = config.channels;
   const Neighbours& neighbours = config.neighbours;
-  std::vector<std::pair<std::string, std::string>> names = {{"channels.target", channels.target},
-                                                            {"channels.obstacles", channels.obstacles},
-                                                            {"channels.arm_state", channels.arm_state},
-                                                            {"channels.arm_command", channels.arm_command},
-                                                            {"channels.controller_status", channels.controller_status},
-                                                            {"channels.loop_timing", channels.loop_timing}};
+  std::vector<std::pair<std::string, std::string>> names = {
+      {"channels.target", channels.target},           {"channels.obstacles", channels.obstacles},
+      {"channels.arm_state", channels.arm_state},     {"channels.other_joints", channels.other_joints},
+      {"channels.arm_command", channels.arm_command}, {"channels.controller_status", channels.controller_status},
+      {"channels.loop_timing", channels.loop_timing}};
   if (!neighbours.publish.empty()) names.emplace_back("neighbours.publish", neighbours.publish);
   for (const std::string& channel : neighbours.listen) names.emplace_back("neighbours.listen", channel);
   std::map<std::string, std::string> used;
@@ -183,13 +191,34 @@ void read_dialect(YamlSection& root, Config& config) {
   config.channels.arm_command = dialect.arm_command_channel;
 }
 
+std::string find_urdf(const YamlSection& section, const std::string& name, const std::string& config_file) {
+  std::string found = find_file(name, config_file);
+  if (found.empty())
+    section.fail("urdf",
+                 fmt::format("there is no file '{}' in the folder of the configuration, in the working directory, "
+                             "in a folder above these, or in share/sidestep",
+                             name));
+  return found;
+}
+
 Robot read_robot(YamlSection section, const std::string& config_file, const Overrides& overrides) {
   Robot robot;
   section.text("urdf", robot.urdf);
   section.text("base", robot.base);
   section.text("tip", robot.tip);
   section.texts("package_path", robot.meshes.package_path);
-  section.whole("capsules_per_mesh", robot.meshes.capsules_per_mesh, {1.0, 8.0});
+  section.renamed("capsules_per_mesh", "pieces_per_mesh");
+  section.whole("pieces_per_mesh", robot.meshes.pieces_per_mesh, {1.0, 8.0});
+  section.text("srdf", robot.srdf);
+  std::vector<std::string> ignored;
+  section.texts("ignore_pairs", ignored);
+  for (const std::string& pair : ignored) {
+    const size_t space = pair.find(' ');
+    if (space == std::string::npos || pair.find(' ', space + 1) != std::string::npos)
+      section.fail("ignore_pairs", fmt::format("'{}' is not two links with a space between them", pair));
+    robot.ignored_pairs.emplace_back(pair.substr(0, space), pair.substr(space + 1));
+  }
+  robot.joint_positions = section.named_numbers("joint_positions", kAnyNumber);  // load_arm() decides
   section.finish();
   if (!overrides.urdf.empty()) robot.urdf = overrides.urdf;
   if (!overrides.base.empty()) robot.base = overrides.base;
@@ -197,13 +226,23 @@ Robot read_robot(YamlSection section, const std::string& config_file, const Over
   if (robot.urdf.empty()) section.fail("urdf", "is missing (or give --urdf)");
   if (robot.base.empty()) section.fail("base", "is missing (or give --base)");
   if (robot.tip.empty()) section.fail("tip", "is missing (or give --tip)");
-  if (overrides.urdf.empty())
-    if (const std::string found = find_file(robot.urdf, config_file); !found.empty()) robot.urdf = found;
+  if (overrides.urdf.empty()) robot.urdf = find_urdf(section, robot.urdf, config_file);
+  if (robot.srdf.empty())
+    robot.srdf = srdf_beside(robot.urdf);
+  else if (const std::string found = find_file(robot.srdf, config_file); !found.empty())
+    robot.srdf = found;
   return robot;
 }
 
+/// Pairs of links that the SRDF or the configuration exempts.
+std::vector<LinkPair> ignored_pairs(const Robot& robot) {
+  std::vector<LinkPair> pairs = robot.srdf.empty() ? std::vector<LinkPair>() : disabled_collisions(robot.srdf);
+  pairs.insert(pairs.end(), robot.ignored_pairs.begin(), robot.ignored_pairs.end());
+  return pairs;
+}
+
 std::vector<std::string> warnings_of(const Settings& settings, const Arm& arm, const JointLimits& of_urdf) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = arm.warnings;
   const auto warn_if = [&](bool is_off, std::string text) {
     if (is_off) warnings.push_back(std::move(text));
   };
@@ -214,10 +253,12 @@ std::vector<std::string> warnings_of(const Settings& settings, const Arm& arm, c
   warn_if(settings.timeouts.coast_s == 0.0, "timeouts.coast_s is 0: an obstacle that is not reported is forgotten");
   for (int i = 0; i < arm.joints; ++i) {
     constexpr double kFastest_radps = 30.0, kSharpest_radps2 = 200.0;
-    warn_if(arm.limits.velocity_radps[i] > kFastest_radps || arm.limits.acceleration_radps2[i] > kSharpest_radps2,
-            fmt::format("limits: joint '{}' has a velocity limit above {:g} rad/s or an acceleration limit above {:g} "
-                        "rad/s2, which limits nothing",
-                        arm.joint_names[i], kFastest_radps, kSharpest_radps2));
+    const double scale = arm.joint_scale[i], fastest = scale * kFastest_radps, sharpest = scale * kSharpest_radps2;
+    const char* unit = arm.prismatic[i] ? "m" : "rad";
+    warn_if(arm.limits.velocity_radps[i] > fastest || arm.limits.acceleration_radps2[i] > sharpest,
+            fmt::format("limits: joint '{}' has a velocity limit above {:g} {}/s or an acceleration limit above {:g} "
+                        "{}/s2, which limits nothing",
+                        arm.joint_names[i], fastest, unit, sharpest, unit));
     warn_if(arm.limits.lower_rad[i] < of_urdf.lower_rad[i] || arm.limits.upper_rad[i] > of_urdf.upper_rad[i] ||
                 arm.limits.velocity_radps[i] > of_urdf.velocity_radps[i],
             fmt::format("limits: joint '{}' may go beyond the limits of the URDF", arm.joint_names[i]));
@@ -240,7 +281,11 @@ Config load_config(const std::string& file, const Overrides& overrides) {
 
   config.robot = read_robot(root.section("robot"), file, overrides);
   const Robot& robot = config.robot;
-  config.model.arm = load_arm(robot.urdf, robot.base, robot.tip, robot.meshes);
+  try {
+    config.model.arm = load_arm(robot.urdf, robot.base, robot.tip, robot.meshes, robot.joint_positions);
+  } catch (const BadJointPosition& error) {
+    root.section("robot").section("joint_positions").fail(error.joint, error.what());
+  }
   read_dialect(root, config);
   const JointLimits of_urdf = config.model.arm.limits;
   read_limits(root.section("limits"), config.model.arm);
@@ -260,7 +305,8 @@ Config load_config(const std::string& file, const Overrides& overrides) {
   config.warnings = warnings_of(settings, config.model.arm, of_urdf);
   use_law(settings, law == "paper" ? Law::kPaper : Law::kSidestep);
   root.finish();
-  config.model.self_pairs = find_self_pairs(config.model.arm, settings.shield.self_clearance_m);  // slow, hence last
+  config.model.self_pairs =  // slow, hence last
+      find_self_pairs(config.model.arm, settings.shield.self_clearance_m, ignored_pairs(robot)).kept;
   return config;
 }
 

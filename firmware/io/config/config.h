@@ -8,6 +8,7 @@
 #include "firmware/io/lcm/dialect.h"
 #include "firmware/io/lcm/wire.h"
 #include "firmware/model/load/load_arm.h"
+#include "firmware/model/load/self_pairs.h"
 
 namespace sidestep {
 
@@ -32,6 +33,9 @@ struct Robot {
   std::string base;
   std::string tip;
   MeshOptions meshes;
+  JointPositions joint_positions;  ///< of joints that are no part of the chain
+  std::string srdf;                ///< path of the file that was found; empty: none
+  std::vector<LinkPair> ignored_pairs;
 };
 
 /// A complete and checked configuration.
@@ -45,7 +49,8 @@ struct Config {
   std::string file;     ///< the YAML file that it was read from; empty without one
   Overrides overrides;  ///< of the command line, included above
 
-  /// One sentence for each value that takes a protection away and may have a reason in an experiment.
+  /// One sentence for each value that takes a protection away and may have a reason in an experiment, and for each
+  /// joint outside the chain whose position is not given.
   std::vector<std::string> warnings;
 
   /// What the wire needs of it. The configuration outlives the wire.

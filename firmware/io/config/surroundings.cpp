@@ -9,6 +9,8 @@ Obstacle obstacle_of(const RestingShape& entry) {
   switch (entry.shape.kind) {
     case ShapeKind::kCapsule:
       return capsule_obstacle(entry.position_m, base_from_shape, size_m[0], size_m[1]);
+    case ShapeKind::kCylinder:
+      return cylinder_obstacle(entry.position_m, base_from_shape, size_m[0], size_m[1]);
     case ShapeKind::kBox:
       return box_obstacle(entry.position_m, base_from_shape, size_m);
     case ShapeKind::kSphere:

@@ -15,10 +15,11 @@ constexpr int kFirstId = -2;  // -1 is "no obstacle" in the status
 }  // namespace
 
 ShapeSize read_shape(YamlSection& section) {
-  const std::string shape = section.choice("shape", {"sphere", "capsule", "box"});
+  const std::string shape = section.choice("shape", {"sphere", "capsule", "box", "cylinder"});
   if (shape == "box") return {ShapeKind::kBox, section.vector("edges_m", kSizeRange_m)};
   const double radius_m = section.number("radius_m", kSizeRange_m);
   if (shape == "sphere") return {ShapeKind::kSphere, {radius_m, 0.0, 0.0}};
+  if (shape == "cylinder") return {ShapeKind::kCylinder, {radius_m, section.number("height_m", kSizeRange_m), 0.0}};
   return {ShapeKind::kCapsule, {radius_m, section.number("length_m", kSizeRange_m), 0.0}};
 }
 

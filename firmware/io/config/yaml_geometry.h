@@ -12,10 +12,10 @@ constexpr NumberRange kPositionRange_m{-1000.0, 1000.0};
 
 /// Poses and shapes in the form that configurations and scenarios share.
 
-enum class ShapeKind { kSphere, kCapsule, kBox };
+enum class ShapeKind { kSphere, kCapsule, kBox, kCylinder };
 
-/// size_m as in obstacle_t: sphere {radius, 0, 0}; capsule {radius, distance between the cap centres, 0}, along its own
-/// z axis; box {edges along its own axes}.
+/// size_m as in obstacle_t: sphere {radius, 0, 0}; capsule {radius, distance between the cap centres, 0} and cylinder
+/// {radius, height, 0}, along its own z axis; box {edges along its own axes}.
 struct ShapeSize {
   ShapeKind kind = ShapeKind::kSphere;
   Vector3 size_m = Vector3::Zero();
@@ -29,7 +29,7 @@ struct RestingShape {
   Quaternion orientation = Quaternion::Identity();
 };
 
-/// The keys `shape` and, depending on the shape, `radius_m`, `length_m` or `edges_m`.
+/// The keys `shape` and, depending on the shape, `radius_m`, `length_m`, `height_m` or `edges_m`.
 ShapeSize read_shape(YamlSection& section);
 
 /// The required key `position_m`.

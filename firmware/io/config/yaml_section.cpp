@@ -176,6 +176,13 @@ void YamlSection::texts(const std::string& key, std::vector<std::string>& values
   for (const YAML::Node& entry : node) values.push_back(to_text(indexed(key, values.size()), entry));
 }
 
+std::map<std::string, double> YamlSection::named_numbers(const std::string& key, NumberRange range) {
+  YamlSection mapping = section(key);
+  std::map<std::string, double> numbers;
+  for (const auto& entry : mapping.node_) numbers[name_of(entry.first)] = mapping.number(name_of(entry.first), range);
+  return numbers;
+}
+
 void YamlSection::choice(const std::string& key, std::string& value, const std::vector<std::string>& choices) {
   text(key, value);
   if (std::find(choices.begin(), choices.end(), value) == choices.end())

@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -65,6 +66,9 @@ class YamlSection {
   void text(const std::string& key, std::string& value);
   void texts(const std::string& key, std::vector<std::string>& values);
 
+  /// A number for each key of a mapping, whatever its keys are; empty when absent.
+  std::map<std::string, double> named_numbers(const std::string& key, NumberRange range);
+
   std::string choice(const std::string& key, const std::vector<std::string>& choices);
   void choice(const std::string& key, std::string& value, const std::vector<std::string>& choices);
 
@@ -76,6 +80,9 @@ class YamlSection {
   /// One number for all joints or a list with one for each.
   JointVector per_joint(const std::string& key, int joints, NumberRange range);
   void per_joint(const std::string& key, int joints, JointVector& value, NumberRange range);
+
+  /// True when the key is given as a list.
+  bool is_list(const std::string& key) const { return node_[key].IsDefined() && node_[key].IsSequence(); }
 
   /// A table: a list of at least one row; a row is a list with one number for each column.
   std::vector<Eigen::VectorXd> rows(const std::string& key, const std::vector<NumberRange>& columns);

@@ -53,6 +53,7 @@ Encoder::Encoder(const Arm& arm, const Dialect& dialect) : arm_(arm), messages_(
   messages_->arm = dialect.make_codec(arm.joints);
   for (const LinkShape& shape : arm.shapes) messages_->shape_links.push_back(shape.link.substr(0, kLongestText));
   messages_->status.nearest_link.reserve(kLongestText);
+  for (std::string& link : messages_->status.self_links) link.reserve(kLongestText);
   messages_->status.message.reserve(2 * kLongestText);
 }
 
@@ -64,6 +65,12 @@ Packet Encoder::encode(const Command& command, int64_t utime, int64_t seq) {
 
 Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   controller_status_t& message = messages_->status;
+  const auto copy_link = [&](int shape, std::string& name) {
+    if (shape < 0)
+      name.clear();
+    else
+      name = messages_->shape_links[static_cast<size_t>(shape)];
+  };
   message.utime = record.utime;
   message.seq = record.seq;
   message.mode = static_cast<int8_t>(report.mode);
@@ -74,10 +81,7 @@ Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   message.target_distance = report.target_distance_m;
   message.clearance = report.clearance_m;
   message.nearest_obstacle = report.nearest_obstacle;
-  if (report.nearest_shape >= 0)
-    message.nearest_link = messages_->shape_links[static_cast<size_t>(report.nearest_shape)];
-  else
-    message.nearest_link.clear();
+  copy_link(report.nearest_shape, message.nearest_link);
   message.beta = report.beta;
   message.damping = report.damping;
   message.shield_correction = report.shield_correction_radps;
@@ -89,6 +93,9 @@ Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   message.foresight = static_cast<int8_t>(report.foresight_status);
   message.guide_horizon = report.guide_horizon_s;
   encode_guide_path(arm_, report, message);
+  message.self_clearance = report.nearest_links.distance_m;
+  copy_link(report.nearest_links.first, message.self_links[0]);
+  copy_link(report.nearest_links.second, message.self_links[1]);
   if (*record.rejected_reason) message.message.append("; rejected: ").append(record.rejected_reason);
   return messages_->buffer.encode(message);
 }

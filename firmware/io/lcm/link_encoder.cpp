@@ -4,8 +4,8 @@
 
 namespace sidestep {
 
-Packet LinkEncoder::encode(const ArmState& arm, int64_t utime) {
-  const LinkPoses poses = forward_kinematics(arm_, arm.position_rad);
+Packet LinkEncoder::encode(const ArmState& arm, const OtherFrames& others, int64_t utime) {
+  const LinkPoses poses = forward_kinematics(arm_, arm.position_rad, others);
   encoder_.begin(utime);
   int id = 0;
   for (const LinkShape& shape : arm_.shapes) {

@@ -15,7 +15,7 @@ class LinkEncoder {
       : arm_(arm), world_from_base_(world_from_base), encoder_(kMaxShapes) {}
 
   /// Does not allocate. The packet is valid until the next call.
-  Packet encode(const ArmState& arm, int64_t utime);
+  Packet encode(const ArmState& arm, const OtherFrames& others, int64_t utime);
 
  private:
   const Arm& arm_;

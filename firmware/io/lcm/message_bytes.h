@@ -12,7 +12,7 @@ namespace sidestep {
 constexpr size_t kFingerprintBytes = 8;
 constexpr size_t kHeaderBytes = kFingerprintBytes + 8;  // fingerprint, utime
 constexpr size_t kCountBytes = 4;
-constexpr size_t kObstacleBytes = 4 + 1 + 16 * 8;  // obstacle_t; a unit test compares it with the generated type
+constexpr size_t kObstacleBytes = 4 + 1 + 16 * 8 + 1;  // obstacle_t; a unit test compares it with the generated type
 
 inline uint64_t big_endian(const void* bytes, int count) {
   uint64_t value = 0;

@@ -13,10 +13,10 @@ struct NetworkInputs::Parts {
   std::unique_ptr<ObstacleMerger> merger;  ///< null without neighbours
 };
 
-NetworkInputs::NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
-                             bool lockstep)
+NetworkInputs::NetworkInputs(const Settings& settings, const Arm& arm, const Dialect& dialect,
+                             const Neighbours& neighbours, bool lockstep)
     : parts_(new Parts{
-          {dialect, joints}, {joints, settings, lockstep ? InputSource::kLockstep : InputSource::kNetwork}, nullptr}) {
+          {dialect, arm}, {arm, settings, lockstep ? InputSource::kLockstep : InputSource::kNetwork}, nullptr}) {
   if (neighbours.listen.empty()) return;
   parts_->merger = std::make_unique<ObstacleMerger>(neighbours.listen.size(), neighbours.world_from_base.inverse(),
                                                     settings.timeouts.obstacles_s);
@@ -44,6 +44,10 @@ bool NetworkInputs::receive(Packet packet, double now_s, Received<ArmState>& rec
 }
 
 bool NetworkInputs::receive(Packet packet, double now_s, Received<Target>& received) {
+  return receive_value(packet, now_s, received);
+}
+
+bool NetworkInputs::receive(Packet packet, double now_s, Received<OtherJoints>& received) {
   return receive_value(packet, now_s, received);
 }
 

@@ -21,7 +21,8 @@ namespace sidestep {
 /// the newest one. In lockstep the loop's thread does all of this.
 class NetworkInputs {
  public:
-  NetworkInputs(const Settings& settings, int joints, const Dialect& dialect, const Neighbours& neighbours,
+  /// The arm outlives this.
+  NetworkInputs(const Settings& settings, const Arm& arm, const Dialect& dialect, const Neighbours& neighbours,
                 bool lockstep);
   ~NetworkInputs();
 
@@ -30,6 +31,7 @@ class NetworkInputs {
   /// time is that of the oldest part. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);
+  bool receive(Packet packet, double now_s, Received<OtherJoints>& received);
   /// part 0: the own channel; part k: the k-th neighbour, from 1.
   bool receive_obstacles(size_t part, Packet packet, double now_s, Received<ObstacleSet>& received);
 

@@ -27,6 +27,8 @@ void encode_shape(const Obstacle& obstacle, obstacle_t& message) {
   }
   const Capsule& capsule = obstacle.capsule;
   const Vector3 axis = capsule.end - capsule.start, size_m(capsule.radius_m, axis.norm(), 0.0);
+  if (obstacle.shape == Shape::kCylinder)
+    return encode_shape(obstacle_t::CYLINDER, rotation_from_z(axis), size_m, message);
   if (axis.isZero(0.0)) return encode_shape(obstacle_t::SPHERE, Quaternion::Identity(), size_m, message);
   encode_shape(obstacle_t::CAPSULE, rotation_from_z(axis), size_m, message);
 }
@@ -34,6 +36,7 @@ void encode_shape(const Obstacle& obstacle, obstacle_t& message) {
 obstacle_t to_message(const Obstacle& obstacle) {
   obstacle_t message;
   message.id = obstacle.id;
+  message.kind = static_cast<int8_t>(obstacle.kind);
   encode_shape(obstacle, message);
   copy(obstacle.capsule.centre(), message.position);
   copy(obstacle.velocity_mps, message.velocity);

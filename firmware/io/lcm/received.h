@@ -28,6 +28,7 @@ struct LatestInputs {
   const Received<ArmState>& arm;
   const Received<Target>& target;
   const Received<ObstacleSet>& obstacles;
+  const Received<OtherJoints>& other_joints;
 };
 
 }  // namespace sidestep

@@ -25,7 +25,8 @@ class UdpReceiver {
 
   struct Datagram {
     Sender sender;
-    Packet bytes;  ///< valid until the next wait()
+    Packet bytes;       ///< valid until the next wait()
+    double received_s;  ///< when the kernel received it, monotonic clock; it may have waited here since then
   };
   /// The next datagram of the batch, in the order of arrival; null at its end.
   const Datagram* next();
@@ -44,6 +45,7 @@ class UdpReceiver {
   int socket_ = -1;
   int wanted_buffer_bytes_ = 0, granted_buffer_bytes_ = 0;
   std::unique_ptr<Batch> batch_;
+  double last_received_s_ = 0.0;
 };
 
 }  // namespace sidestep

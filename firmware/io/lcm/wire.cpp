@@ -37,6 +37,7 @@ struct Wire::Network {
   FragmentAssembly assembly{kLargestMessageBytes};
   std::vector<PacketHandler> handlers;  // by the number of the channel
   std::atomic<int64_t> malformed_datagrams{0}, incomplete_messages{0};
+  double received_s = 0.0;  // of the last datagram
   lcm_t* lcm = nullptr;
   SentMessages sent_commands;
   Encoder encoder;
@@ -68,6 +69,7 @@ struct Wire::Network {
     if (!receiver.wait(timeout_ms)) return false;
     while (const UdpReceiver::Datagram* datagram = receiver.next()) {
       const auto message = assembly.add(datagram->sender, datagram->bytes);
+      received_s = datagram->received_s;
       malformed_datagrams = assembly.malformed_datagrams();
       incomplete_messages = assembly.incomplete_messages();
       if (!message) continue;
@@ -112,6 +114,9 @@ void Wire::on_target(PacketHandler handler) {
 void Wire::on_obstacles(PacketHandler handler) {
   network_->subscribe(network_->channels.obstacles, std::move(handler));
 }
+void Wire::on_other_joints(PacketHandler handler) {
+  network_->subscribe(network_->channels.other_joints, std::move(handler));
+}
 void Wire::on_neighbour(size_t k, PacketHandler handler) {
   network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }
@@ -129,6 +134,10 @@ bool Wire::receive(int timeout_ms) {
   return network_->receive(timeout_ms);
 }
 
+double Wire::received_s() const {
+  return network_->received_s;
+}
+
 Reception Wire::reception() const {
   return {network_->receiver.lost_datagrams(), network_->malformed_datagrams, network_->incomplete_messages};
 }
@@ -142,9 +151,9 @@ void Wire::publish(const Report& report, const CycleRecord& record) {
   network_->send(network_->channels.controller_status, network_->encoder.encode(report, record));
 }
 
-void Wire::publish(const ArmState& arm, int64_t utime) {
+void Wire::publish(const ArmState& arm, const OtherFrames& others, int64_t utime) {
   const std::string& channel = network_->neighbours.publish;
-  if (!channel.empty()) network_->send(channel, network_->link_encoder.encode(arm, utime));
+  if (!channel.empty()) network_->send(channel, network_->link_encoder.encode(arm, others, utime));
 }
 
 void Wire::publish(const LoopTiming& timing, int64_t utime) {

@@ -36,6 +36,7 @@ class Wire {
   void on_arm_state(PacketHandler handler);
   void on_target(PacketHandler handler);
   void on_obstacles(PacketHandler handler);
+  void on_other_joints(PacketHandler handler);
   /// Links of the k-th neighbour, k from 0.
   void on_neighbour(size_t k, PacketHandler handler);
   /// Commands on the own command channel that another process has sent. In lockstep all controllers of an arm answer
@@ -46,6 +47,10 @@ class Wire {
   /// after a batch of datagrams without one.
   bool receive(int timeout_ms);
 
+  /// When this machine received the packet that a handler is called with, monotonic clock. After a pause of the process
+  /// many packets have waited: they are as old as that.
+  double received_s() const;
+
   /// May be called from another thread than receive().
   Reception reception() const;
 
@@ -54,7 +59,7 @@ class Wire {
   void publish(const Report& report, const CycleRecord& record);
   void publish(const LoopTiming& timing, int64_t utime);
   /// The links of the measured arm, where neighbours.publish names a channel.
-  void publish(const ArmState& arm, int64_t utime);
+  void publish(const ArmState& arm, const OtherFrames& others, int64_t utime);
 
  private:
   struct Network;

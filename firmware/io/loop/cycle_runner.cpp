@@ -1,5 +1,7 @@
 #include "firmware/io/loop/cycle_runner.h"
 
+#include "firmware/control/extrapolation.h"
+
 namespace sidestep {
 namespace {
 
@@ -28,6 +30,11 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
   arguments.now_s = trigger.now_s;
   arguments.inputs = {latest.arm.latest(),    latest.target.latest(), latest.obstacles.latest(),
                       trigger.skipped_cycles, trigger.stop,           trigger.foreign_command_s};
+  if (latest.other_joints.count > 0) {
+    arguments.inputs.other_joints = latest.other_joints.latest();
+    arguments.other_joints = latest.other_joints.message;
+    arguments.inputs.other_joints.message = &arguments.other_joints;
+  }
   if (const Guide* guide = foresight_thread_.latest()) {
     arguments.guide = *guide;
     arguments.inputs.guide = &arguments.guide;
@@ -41,7 +48,9 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
   if (cycle.commanded) wire_.publish(cycle.command, arguments.utime, arguments.seq);
   const AcceptedArmState& arm = state_.arm_monitor.accepted;
   const bool arm_fresh = trigger.now_s - arm.received_s <= model_.settings.timeouts.arm_state_s;
-  if (state_.arm_monitor.count > 0 && arm_fresh) wire_.publish(arm.state, arguments.utime);
+  if (state_.arm_monitor.count > 0 && arm_fresh)
+    wire_.publish(arm.state, present_other_joints(model_, arguments.inputs.other_joints, trigger.now_s),
+                  arguments.utime);
 
   cycle.report = result.report;
   cycle.report.limiting |= degraded_ | (blackbox_.failed() ? kLimitingNoBlackbox : kLimitingNothing);

@@ -18,11 +18,12 @@ class Lockstep {
         foresight_thread_(config.model, true),
         wire_(lcm_url, config.wire()),
         runner_(config, wire_, blackbox_, foresight_thread_, true, kLimitingNothing),
-        inputs_(config.model.settings, config.model.arm.joints, *config.dialect, config.neighbours, true),
+        inputs_(config.model.settings, config.model.arm, *config.dialect, config.neighbours, true),
         obstacles_(std::make_unique<Pending<ObstacleSet>>()),
         stop_(requests.stop) {
     wire_.on_arm_state([this](Packet packet) { cycle(packet); });
     wire_.on_target([this](Packet packet) { receive(target_, packet); });
+    wire_.on_other_joints([this](Packet packet) { receive(other_joints_, packet); });
     wire_.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     wire_.on_foreign_command(true, [this] { foreign_command_s_ = now_s_; });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
@@ -87,7 +88,8 @@ class Lockstep {
     trigger.foreign_command_s = foreign_command_s_;
     trigger.rejected_messages = inputs_.rejected();
     trigger.rejected_reason = inputs_.last_reason();
-    runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_)}, trigger);
+    runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_), other_joints_.take(now_s_)},
+                trigger);
   }
 
   Blackbox blackbox_;
@@ -97,6 +99,7 @@ class Lockstep {
   NetworkInputs inputs_;
   Pending<ArmState> arm_;
   Pending<Target> target_;
+  Pending<OtherJoints> other_joints_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
   double now_s_ = 0.0;  ///< of the last cycle
   double foreign_command_s_ = -HUGE_VAL;

@@ -24,14 +24,14 @@ constexpr double kLongestBraking_s = 5.0;
 class Receiver {
  public:
   Receiver(Wire& wire, const Config& config)
-      : wire_(wire),
-        inputs_(config.model.settings, config.model.arm.joints, *config.dialect, config.neighbours, false) {
+      : wire_(wire), inputs_(config.model.settings, config.model.arm, *config.dialect, config.neighbours, false) {
     wire.on_arm_state([this](Packet packet) { receive(arm, packet); });
     wire.on_target([this](Packet packet) { receive(target, packet); });
+    wire.on_other_joints([this](Packet packet) { receive(other_joints, packet); });
     wire.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
       wire.on_neighbour(k, [this, k](Packet packet) { receive_obstacles(k + 1, packet); });
-    wire.on_foreign_command(false, [this] { foreign_command_s = monotonic_s(); });
+    wire.on_foreign_command(false, [this] { foreign_command_s = wire_.received_s(); });
   }
 
   void run(const std::atomic<bool>& end) {
@@ -45,6 +45,7 @@ class Receiver {
   TripleBuffer<Received<ArmState>> arm;
   TripleBuffer<Received<Target>> target;
   TripleBuffer<Received<ObstacleSet>> obstacles;
+  TripleBuffer<Received<OtherJoints>> other_joints;
   std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
@@ -53,12 +54,12 @@ class Receiver {
  private:
   template <typename Message>
   void receive(TripleBuffer<Received<Message>>& buffer, Packet packet) {
-    const bool accepted = inputs_.receive(packet, monotonic_s(), buffer.draft());
+    const bool accepted = inputs_.receive(packet, wire_.received_s(), buffer.draft());
     publish(accepted, buffer);
   }
 
   void receive_obstacles(size_t part, Packet packet) {
-    const bool accepted = inputs_.receive_obstacles(part, packet, monotonic_s(), obstacles.draft());
+    const bool accepted = inputs_.receive_obstacles(part, packet, wire_.received_s(), obstacles.draft());
     publish(accepted, obstacles);
   }
 
@@ -103,10 +104,12 @@ class Loop {
 
  private:
   void cycle(double now_s, double late_s, int skipped, bool stop) {
-    const LatestInputs latest{receiver_.arm.latest(), receiver_.target.latest(), receiver_.obstacles.latest()};
+    const LatestInputs latest{receiver_.arm.latest(), receiver_.target.latest(), receiver_.obstacles.latest(),
+                              receiver_.other_joints.latest()};
     CycleRunner::CycleTrigger trigger;
     // A message received after waking and before this line counts as received now.
-    trigger.now_s = std::max({now_s, latest.arm.received_s, latest.target.received_s, latest.obstacles.received_s});
+    trigger.now_s = std::max({now_s, latest.arm.received_s, latest.target.received_s, latest.obstacles.received_s,
+                              latest.other_joints.received_s});
     trigger.utime = static_cast<int64_t>(trigger.now_s * 1e6);
     trigger.skipped_cycles = skipped;
     trigger.wake_latency_s = late_s;

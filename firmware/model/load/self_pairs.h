@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -7,17 +8,31 @@
 
 namespace sidestep {
 
-/// The pairs of link shapes, as indices into Arm::shapes, lower index first, that must keep clear of each other. These
-/// are all pairs, except
+/// The links of two shapes that need not keep clear of each other.
+using LinkPair = std::pair<std::string, std::string>;
+
+/// The pairs of shapes of an arm, and what they forbid.
+struct SelfPairs {
+  std::vector<SelfPair> kept;
+  std::vector<std::pair<int, int>> overlaps;  ///< pairs that touch by construction: not kept apart
+  double forbidden_share = 0.0;  ///< of the sampled configurations without contact, those nearer than a clearance
+  int worst = -1;                ///< index of the kept pair that forbids most of these; -1: none forbids any
+  double worst_share = 0.0;      ///< what it forbids
+};
+
+/// The pairs of link shapes, lower index first, that must keep clear of each other. These are all pairs, except
 /// - neighbours: shapes of one body, or of two bodies with no shape on any body between them. A shape below the arm
 ///   is a neighbour only of the other shapes of body 0;
-/// - overlaps: pairs that are near each other by construction, or because of the capsules around them: those that touch
-///   with every joint in the middle of its range, or in more than half of 200 sampled configurations, or that are
-///   nearer than clearance_m in all of these.
-/// For start-up. The samples have a fixed seed, so that the result is always the same.
-std::vector<std::pair<int, int>> find_self_pairs(const Arm& arm, double clearance_m = 0.0);
-
-/// The overlaps that find_self_pairs() skips.
-std::vector<std::pair<int, int>> find_overlaps(const Arm& arm, double clearance_m = 0.0);
+/// - those of two links that are in `ignored`, in either order;
+/// - overlaps: pairs that touch in more than half of 5000 sampled configurations.
+///
+/// Links of some arms pass each other within millimetres by construction. Therefore the clearance of a pair is the
+/// least of clearance_m and a quantile of its own distance over the samples in which no pair touches, but at least
+/// 1 mm or, if that is less, half the median of its distance. The quantile is the same for all pairs: the largest with
+/// which all pairs together forbid no more than 1.5 % of these samples.
+///
+/// For start-up; takes about a second, after that the result is cached (disk_cache.h). The samples have a fixed seed,
+/// so that the result is always the same.
+SelfPairs find_self_pairs(const Arm& arm, double clearance_m, const std::vector<LinkPair>& ignored = {});
 
 }  // namespace sidestep

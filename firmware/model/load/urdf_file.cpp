@@ -7,6 +7,7 @@
 
 #include "firmware/base/fail.h"
 #include "firmware/base/text_file.h"
+#include "firmware/model/load/xml_comments.h"
 
 namespace sidestep {
 namespace {
@@ -36,6 +37,8 @@ class FirstError : public console_bridge::OutputHandler {
 urdf::ModelInterfaceSharedPtr read_urdf(const std::string& file) {
   const std::string text = read_text_file(file);
   if (std::count(text.begin(), text.end(), '<') > kMostTags) fail("{}: more than {} tags", file, kMostTags);
+  const bool is_xacro = without_comments(text).find("<xacro:") != std::string::npos;
+  if (is_xacro) fail("{}: is a xacro file; make a URDF of it first: xacro {} > robot.urdf", file, file);
   const FirstError error;
   urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!error.text().empty()) fail("{}: not a valid URDF: {}", file, error.text());

@@ -7,35 +7,12 @@
 #include <stdexcept>
 
 #include "host/campaign/scene.h"
+#include "host/campaign/segment.h"
 
 namespace sidestep::campaign {
 namespace {
 
 constexpr double kColumnStep_s = 0.02;
-
-double distance_to_segment(const Vector3& start, const Vector3& end, const Vector3& p) {
-  const Vector3 along = end - start;
-  const double squared = along.squaredNorm();
-  const double share = squared > 0.0 ? std::clamp((p - start).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (p - start - share * along).norm();
-}
-
-/// Distance of the segments' lines if both nearest points lie within the segments, else infinite.
-double inner_distance(const Vector3& a_start, const Vector3& a_end, const Vector3& b_start, const Vector3& b_end) {
-  const Vector3 a = a_end - a_start, b = b_end - b_start, from = b_start - a_start, normal = a.cross(b);
-  const double squared = normal.squaredNorm();
-  if (squared <= 1e-18 * a.squaredNorm() * b.squaredNorm()) return sim::kNothingNear;  // parallel, or a point
-  const double on_a = from.cross(b).dot(normal) / squared, on_b = from.cross(a).dot(normal) / squared;
-  const bool within = on_a >= 0.0 && on_a <= 1.0 && on_b >= 0.0 && on_b <= 1.0;
-  return within ? std::abs(from.dot(normal)) / std::sqrt(squared) : sim::kNothingNear;
-}
-
-/// Two segments are nearest at an end of one of them, or where their lines are nearest.
-double segment_distance(const Vector3& a_start, const Vector3& a_end, const Vector3& b_start, const Vector3& b_end) {
-  return std::min({distance_to_segment(a_start, a_end, b_start), distance_to_segment(a_start, a_end, b_end),
-                   distance_to_segment(b_start, b_end, a_start), distance_to_segment(b_start, b_end, a_end),
-                   inner_distance(a_start, a_end, b_start, b_end)});
-}
 
 double link_clearance_m(const ArmPose& pose, size_t link, const Capsule& obstacle) {
   return segment_distance(pose.corners[link], pose.corners[link + 1], obstacle.start, obstacle.end) - kLinkRadius_m -
@@ -89,19 +66,12 @@ double clearance_m(const SearchScene& scene, const ArmPose& pose, double t_s, do
   return least_m;
 }
 
-double self_clearance_m(const ArmPose& pose) {
-  double least_m = sim::kNothingNear;
-  for (size_t a = 0; a + 1 < pose.corners.size(); ++a)
-    for (size_t b = a + 2; b + 1 < pose.corners.size(); ++b)
-      least_m = std::min(least_m, link_clearance_m(pose, a, {pose.corners[b], pose.corners[b + 1], kLinkRadius_m}));
-  return least_m;
-}
-
 bool is_valid(const SearchScene& scene, const Limits& limits, double fastest_mps) {
   if ((scene.start_rad - limits.lower_rad).minCoeff() < 0.0 || (limits.upper_rad - scene.start_rad).minCoeff() < 0.0)
     return false;
   const ArmPose pose = lwa3_arm().pose(scene.start_rad);
-  if (self_clearance_m(pose) < kSearchSelfClearance_m || clearance_m(scene, pose, 0.0) < kSeenAt_m) return false;
+  if (lwa3_arm().self_clearance(pose) < kSearchSelfClearance_m || clearance_m(scene, pose, 0.0) < kSeenAt_m)
+    return false;
   return std::all_of(scene.obstacles.begin(), scene.obstacles.end(), [&](const MovingCapsule& obstacle) {
     const double speed_mps = obstacle.velocity_mps.norm();
     return speed_mps >= kLeastSpeed_mps && speed_mps <= fastest_mps && obstacle.crossing_s >= 0.0 &&

@@ -51,9 +51,6 @@ constexpr double kLeastSpeed_mps = 0.1;
 /// from the corners of the judge's arm, independently of the controller. Returns within_m if it is not less.
 double clearance_m(const SearchScene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
 
-/// Least distance between the surfaces of two links of the LWA3 that do not share a joint.
-double self_clearance_m(const ArmPose& pose);
-
 /// Whether the scene keeps the rules of the search: the start is within the limits and free of self-collision, no
 /// obstacle is faster than fastest_mps, nearer than kSeenAt_m at t = 0 or passes the lowest link within
 /// kColumnClearance_m, and all have passed within kLongestSearchScene_s.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "host/sim/plant.h"
@@ -63,6 +64,8 @@ void measure(const SearchScene& scene, const Joints& from_rad, const Joints& to_
     const ArmPose pose = lwa3_arm().pose(from_rad + share * (to_rad - from_rad));
     const double least_m = clearance_m(scene, pose, t_s, closest.clearance_m);
     if (least_m < closest.clearance_m) closest = {least_m, t_s};
+    const double self_m = lwa3_arm().self_clearance(pose, 0.0);
+    if (self_m < std::min(0.0, closest.clearance_m)) closest = {self_m, t_s};
   }
 }
 

@@ -7,7 +7,7 @@ namespace sidestep::campaign {
 
 /// The closest approach of arm and obstacles in one trial.
 struct ClosestApproach {
-  double clearance_m = sim::kNothingNear;  ///< negative: contact
+  double clearance_m = sim::kNothingNear;  ///< negative: contact, also of two links
   double t_s = 0.0;
 };
 

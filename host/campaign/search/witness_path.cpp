@@ -68,7 +68,7 @@ double path_clearance_m(const SearchScene& scene, const WitnessPath& path, doubl
   const int steps = static_cast<int>(std::ceil(scene.duration_s() / step_s));
   for (int k = 0; k <= steps && least_m >= enough_m; ++k) {
     const ArmPose pose = lwa3_arm().pose(path.at(k * step_s));
-    if (self_clearance_m(pose) < kSearchSelfClearance_m) return -sim::kNothingNear;
+    if (lwa3_arm().self_clearance(pose) < kSearchSelfClearance_m) return -sim::kNothingNear;
     least_m = clearance_m(scene, pose, k * step_s, least_m);
   }
   return least_m;

@@ -120,6 +120,28 @@ void clearance_matches_fcl(void**) {
   check(apart > 1000 && overlapping > 1000, "%d apart, %d overlapping", apart, overlapping);
 }
 
+void self_clearance_matches_fcl(void**) {
+  Random random(5);
+  int apart = 0, overlapping = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Joints q_rad = random_joints(random);
+    if (trial % 2 == 0) q_rad[3] = random.uniform(1.7, 2.2), q_rad[4] *= 0.1, q_rad[5] = random.uniform(1.7, 2.2);
+    const ArmPose arm = lwa3_arm().pose(q_rad);
+    const double clearance_m = lwa3_arm().self_clearance(arm);
+    const Objects all = objects(arm, Vector3::Zero(), 0.1);
+    double least_m = 1e9;
+    for (const auto& [a, b] : {std::pair{0, 2}, {0, 3}, {1, 3}}) {
+      fcl::DistanceResultd result;
+      const auto &first = all.links[static_cast<size_t>(a)], &second = all.links[static_cast<size_t>(b)];
+      least_m = std::min(least_m, fcl::distance(&first, &second, fcl::DistanceRequestd(true), result));
+    }
+    check((least_m <= 0.0) == (clearance_m <= 0.0), "trial %d: %g and %g", trial, clearance_m, least_m);
+    if (clearance_m > 0.0) check_near_because(clearance_m, least_m, 1e-6, "trial %d", trial);
+    ++(clearance_m > 0.0 ? apart : overlapping);
+  }
+  check(apart > 100 && overlapping > 100, "%d apart, %d overlapping", apart, overlapping);
+}
+
 /// Also for a sphere that overlaps the arm.
 void a_larger_radius_reduces_the_clearance_by_the_same_length(void**) {
   Random random(4);
@@ -138,6 +160,7 @@ int main() {
       cmocka_unit_test(frames_match_the_dh_table),
       cmocka_unit_test(jacobian_is_the_derivative_of_the_tool_position),
       cmocka_unit_test(clearance_matches_fcl),
+      cmocka_unit_test(self_clearance_matches_fcl),
       cmocka_unit_test(a_larger_radius_reduces_the_clearance_by_the_same_length),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -104,6 +104,14 @@ void statistics_of_a_known_sample(void**) {
   check(std::isnan(largest(sample, &TrialMetrics::error_rms_m)), "no trial has it");
 }
 
+void links_that_touch_each_other_are_a_contact(void**) {
+  Row near = trial(0.02, 0.001, 3.0), folded = near;
+  near.metrics.self_clearance_m = 0.001;
+  folded.metrics.self_clearance_m = 0.0;
+  assert_true(succeeded(near) && !touched(near));
+  assert_true(touched(folded) && touched_itself(folded) && !succeeded(folded));
+}
+
 bool same_except_cpu_time(const Row& a, const Row& b) {
   const TrialMetrics &x = a.metrics, &y = b.metrics;
   return a.family == b.family && a.seed == b.seed && x.clearance_m == y.clearance_m &&
@@ -145,6 +153,7 @@ int main() {
       cmocka_unit_test(merged_shards_give_the_table_of_the_whole_run),
       cmocka_unit_test(a_duplicate_trial_is_rejected_by_name),
       cmocka_unit_test(statistics_of_a_known_sample),
+      cmocka_unit_test(links_that_touch_each_other_are_a_contact),
       cmocka_unit_test(threads_and_shards_do_not_change_the_results),
       cmocka_unit_test(a_stopped_run_starts_no_trial),
   };

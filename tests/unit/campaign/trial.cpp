@@ -149,6 +149,31 @@ void the_arm_of_the_family_real_lags(void**) {
   }
 }
 
+/// Folds the hand to the upper arm, in 2 s.
+class FoldController : public TrialController {
+ public:
+  ControllerOutput cycle(const ControllerInput& input) override {
+    Joints folded_rad = Joints::Zero(7);
+    folded_rad[3] = folded_rad[5] = 1.97;
+    ControllerOutput output;
+    output.ready = true;
+    output.velocity_radps = (folded_rad - input.q_rad).cwiseMax(-2.0).cwiseMin(2.0);
+    return output;
+  }
+};
+
+void an_arm_that_touches_itself_has_a_contact(void**) {
+  Scene scene = make_scene(family_named("moving"), 5);
+  scene.spheres.clear();
+  FoldController fold;
+  IdleController idle;
+  const TrialMetrics folded = run_trial(scene, fold), at_rest = run_trial(scene, idle);
+  check(folded.self_clearance_m < 0.0, "%g m", folded.self_clearance_m);
+  check(at_rest.self_clearance_m > 0.0, "%g m", at_rest.self_clearance_m);
+  assert_true(touched({scene.family, "", scene.seed, folded}));
+  assert_false(touched({scene.family, "", scene.seed, at_rest}));
+}
+
 void smoothness_of_a_known_stream(void**) {
   Smoothness smoothness(Joints::Zero(7));
   Joints velocity = Joints::Zero(7);
@@ -173,6 +198,7 @@ int main() {
       cmocka_unit_test(a_controller_that_never_tracks_is_an_error_with_its_message),
       cmocka_unit_test(a_configuration_with_surroundings_is_rejected),
       cmocka_unit_test(the_arm_of_the_family_real_lags),
+      cmocka_unit_test(an_arm_that_touches_itself_has_a_contact),
       cmocka_unit_test(smoothness_of_a_known_stream),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

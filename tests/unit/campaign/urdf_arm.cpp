@@ -51,6 +51,22 @@ void poses_match_the_benchmarks_lwa3(void**) {
   }
 }
 
+void self_clearance_matches_the_benchmarks_lwa3(void**) {
+  const UrdfArm arm(load_config("firmware/config/lwa3.yaml", {}));
+  test::Random random(2);
+  int touching = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Joints q_rad = random_joints(random, lwa3_arm().range());
+    if (trial % 2 == 0) q_rad[3] = random.uniform(1.7, 1.97), q_rad[4] *= 0.1, q_rad[5] = random.uniform(1.7, 1.97);
+    const double one_m = arm.self_clearance(arm.pose(q_rad), 0.05);
+    const double other_m = lwa3_arm().self_clearance(lwa3_arm().pose(q_rad), 0.05);
+    touching += other_m <= 0.0;
+    check((one_m <= 0.0) == (other_m <= 0.0), "trial %d: %g m and %g m", trial, one_m, other_m);
+    if (other_m > 0.0) check_near_because(one_m, other_m, 1e-6, "trial %d", trial);
+  }
+  check(touching > 20, "only %d touch", touching);
+}
+
 void only_the_lwa3_gets_the_lwa3_model(void**) {
   const auto own = judge_arm_of(load_config("firmware/config/lwa3.yaml", {}));
   assert_non_null(dynamic_cast<const Lwa3Arm*>(own.get()));
@@ -159,6 +175,7 @@ void contact_between_two_periods_is_detected(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(poses_match_the_benchmarks_lwa3),
+      cmocka_unit_test(self_clearance_matches_the_benchmarks_lwa3),
       cmocka_unit_test(only_the_lwa3_gets_the_lwa3_model),
       cmocka_unit_test(an_lwa3_with_another_shape_or_limit_gets_the_urdf_model),
       cmocka_unit_test(meshes_are_found_on_the_configured_package_path),

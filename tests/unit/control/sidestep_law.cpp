@@ -18,7 +18,7 @@ NominalCommand nominal_at(const JointVector& q_rad, const Target& target) {
   const JointVector at_rest = JointVector::Zero(q_rad.size());
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   return sidestep_law(kGains, {lwa3(), poses, jacobian, q_rad, at_rest, target, ObstacleView{}, Clearance{}},
-                      away_from_limits(kGains, lwa3().limits, q_rad));
+                      away_from_limits(kGains, lwa3(), q_rad));
 }
 
 /// A target that the tool has already reached.

@@ -90,19 +90,22 @@ void for_random_plans(Guide (Planner::*plan)(const Snapshot&), int least_plans, 
   check(found >= least_plans, "only %d plans were found", found);
 }
 
-/// The plan is clear at the instants that the planner samples, and touches nothing between them.
+/// The plan is clear at the instants that the planner samples, and touches nothing between them. A retreat has no
+/// clearance to keep in the start phase.
 void check_clear(const Snapshot& snapshot, const Guide& guide) {
   const double at_start_m = clearance_m(guide.position_rad[0], snapshot.nearby, 0.0);
   int sample = 0;
   for (double after_s = 0.0; after_s <= settings().horizon_s; after_s += kSampleEvery_s, ++sample) {
-    const double allowed_m =
-        after_s < kStartPhase_s ? std::min(settings().clearance_m, at_start_m) - 0.005 : settings().clearance_m;
+    const bool starts = after_s < kStartPhase_s, retreats = guide.foresight_status == ForesightStatus::kWaiting;
+    const double start_m = retreats ? 0.0 : std::min(settings().clearance_m, at_start_m) - 0.005;
+    const double allowed_m = starts ? start_m : settings().clearance_m;
     const double clear_m =
         clearance_m(point_of(guide, snapshot.now_s + after_s).position_rad, snapshot.nearby, after_s);
     check(clear_m >= allowed_m - 1e-12, "sample %d: %g m, allowed %g m", sample, clear_m, allowed_m);
     const double between_s = after_s + 0.5 * kSampleEvery_s;
     const JointVector between_rad = point_of(guide, snapshot.now_s + between_s).position_rad;
-    check(clearance_m(between_rad, snapshot.nearby, between_s) > 0.0, "a contact after sample %d", sample);
+    check((retreats && starts) || clearance_m(between_rad, snapshot.nearby, between_s) > 0.0,
+          "a contact after sample %d", sample);
   }
 }
 
@@ -173,11 +176,11 @@ void a_plan_to_an_orientation_ends_with_it(void**) {
   check(found > 10, "only %d plans were found", found);
 }
 
-void a_retreat_stays_within_one_radian_per_joint(void**) {
+void a_retreat_stays_within_two_radians_per_joint(void**) {
   for_random_plans(&Planner::plan_retreat, 30, [](const Snapshot& snapshot, const Guide& guide) {
     assert_int_equal(static_cast<int>(guide.foresight_status), static_cast<int>(ForesightStatus::kWaiting));
     const JointVector end_rad = point_of(guide, guide.end_s()).position_rad;
-    check((end_rad - snapshot.arm.position_rad).cwiseAbs().maxCoeff() <= 1.0, "farther than 1 rad");
+    check((end_rad - snapshot.arm.position_rad).cwiseAbs().maxCoeff() <= 2.0, "farther than 2 rad");
   });
 }
 
@@ -242,7 +245,7 @@ int main() {
       cmocka_unit_test(a_plan_keeps_the_limits_of_the_joints),
       cmocka_unit_test(a_plan_to_the_target_ends_there_a_second_before_the_horizon),
       cmocka_unit_test(a_plan_to_an_orientation_ends_with_it),
-      cmocka_unit_test(a_retreat_stays_within_one_radian_per_joint),
+      cmocka_unit_test(a_retreat_stays_within_two_radians_per_joint),
       cmocka_unit_test(the_same_seed_gives_the_same_plans_and_another_seed_others),
       cmocka_unit_test(a_call_makes_six_tries),
       cmocka_unit_test(where_nothing_is_clear_there_is_no_plan),

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "firmware/model/prediction.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
@@ -34,24 +35,29 @@ void a_snapshot_is_tracking_only_in_that_mode(void**) {
   assert_true(snapshot_of(moving)->tracking);
 }
 
-/// Every other one of 100 spheres is out of reach; those are dropped first.
-void of_too_many_obstacles_a_snapshot_keeps_the_nearest_to_the_base(void**) {
+/// 100 spheres that come nowhere near the arm, before and after the one that does.
+void of_too_many_obstacles_a_snapshot_keeps_those_that_come_nearest_to_the_arm(void**) {
   ClosedLoop loop = test::tracking("sidestep");
-  for (int i = 0; i < 50; ++i) {
-    loop.add_sphere(Vector3(3.0 + 0.1 * i, 0, 0), Vector3::Zero(), 0.05);
-    loop.add_sphere(Vector3(0, 1.5 + 0.01 * i, 0), Vector3::Zero(), 0.05);
-  }
+  const Vector3 tool_m = loop.target.position_m;
+  for (int i = 0; i < 50; ++i) loop.add_sphere(Vector3(-0.5, 0.01 * i, -0.6), Vector3::Zero(), 0.01);
+  loop.add_sphere(tool_m + Vector3(0, 0, 2.0), Vector3(0, 0, -0.4), 0.05);
+  for (int i = 0; i < 50; ++i) loop.add_sphere(Vector3(0.5, 0.01 * i, -0.6), Vector3::Zero(), 0.01);
   const auto snapshot = snapshot_of(loop);
   assert_int_equal(snapshot->nearby.count, kMaxNearbyObstacles);
-  int near = 0;
+  int falling = 0;
+  for (int i = 0; i < snapshot->nearby.count; ++i)
+    falling += snapshot->nearby.obstacles[static_cast<size_t>(i)].velocity_mps.z() < 0.0;
+  assert_int_equal(falling, 1);
+}
+
+void a_snapshot_keeps_the_nearest_obstacles_at_rest(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  for (int i = 0; i < 100; ++i) loop.add_sphere(Vector3(0, 1.5 + 0.01 * ((37 * i) % 100), 0), Vector3::Zero(), 0.05);
+  const auto snapshot = snapshot_of(loop);
   double farthest_m = 0.0;
-  for (int i = 0; i < snapshot->nearby.count; ++i) {
-    const Vector3 centre = snapshot->nearby.obstacles[static_cast<size_t>(i)].capsule.centre();
-    near += centre.norm() < 2.5;
-    farthest_m = std::max(farthest_m, centre.norm());
-  }
-  assert_int_equal(near, 50);
-  check_near(farthest_m, 3.0 + 0.1 * 13, 1e-9);
+  for (int i = 0; i < snapshot->nearby.count; ++i)
+    farthest_m = std::max(farthest_m, snapshot->nearby.obstacles[static_cast<size_t>(i)].capsule.start.y());
+  check_near(farthest_m, 1.5 + 0.01 * 63, 1e-9);
 }
 
 void a_target_keeps_its_velocity_for_a_second_and_then_rests(void**) {
@@ -111,6 +117,41 @@ void a_rollout_meets_an_obstacle_that_comes_too_fast(void**) {
   check(forecast.cost_s >= 20.0, "cost %g s", forecast.cost_s);
 }
 
+/// The cost counts the whole horizon, although the arm rests soon and its simulation ends.
+void an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  loop.run(3.0);
+  check_near(forecast_of(loop).cost_s, 0.0, 1e-9);
+  loop.target.position_m = Vector3(0, 0, 3);
+  loop.run(8.0);
+  const Forecast stuck = forecast_of(loop);
+  assert_false(stuck.arrives);
+  check_near(stuck.cost_s, loop.model.settings.foresight.horizon_s + 5.0, 1e-6);
+}
+
+void an_arm_at_rest_still_expects_an_obstacle_that_comes_late(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  loop.add_sphere(loop.target.position_m + Vector3(0, 3.0, 0), Vector3(0, -0.6, 0), 0.3);
+  const Forecast forecast = forecast_of(loop);
+  check(forecast.collides || forecast.cost_s > 0.0, "the sphere, which arrives after 4.5 s, changes nothing");
+}
+
+/// 7 mm from a sphere: a contact for an arm that should keep 60 mm, none for one that may pass at 2 mm.
+void a_collision_is_judged_by_the_hard_clearance_of_the_settings(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  loop.add_sphere(poses.tool_position + Vector3(0, 0, 0.3), Vector3::Zero(), 0.05);
+  Obstacle& sphere = loop.obstacles->obstacles[0];
+  for (int i = 0; i < 50; ++i)
+    sphere.capsule.start.z() = sphere.capsule.end.z() -=
+        clearance_after(loop.model.arm, poses, &sphere, 1, 0.0, 1.0) - 0.007;
+  ShieldSettings& shield = loop.model.settings.shield;
+  for (const double clearance_m : {0.002, 0.06}) {
+    shield.hard_clearance_m = shield.pass_clearance_m = shield.comfort_clearance_m = clearance_m;
+    assert_int_equal(forecast_of(loop).collides, clearance_m > 0.007);
+  }
+}
+
 void the_same_snapshot_gives_the_same_forecast_without_allocation(void**) {
   ClosedLoop loop = test::tracking("sidestep");
   loop.add_sphere(Vector3(0.2, 0.2, 0.6), Vector3(-0.1, -0.1, 0), 0.05);
@@ -130,12 +171,16 @@ void the_same_snapshot_gives_the_same_forecast_without_allocation(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_snapshot_is_tracking_only_in_that_mode),
-      cmocka_unit_test(of_too_many_obstacles_a_snapshot_keeps_the_nearest_to_the_base),
+      cmocka_unit_test(of_too_many_obstacles_a_snapshot_keeps_those_that_come_nearest_to_the_arm),
+      cmocka_unit_test(a_snapshot_keeps_the_nearest_obstacles_at_rest),
       cmocka_unit_test(a_target_keeps_its_velocity_for_a_second_and_then_rests),
       cmocka_unit_test(the_tool_is_at_the_target_within_10_mm_and_a_twentieth_of_a_radian),
       cmocka_unit_test(a_rollout_with_a_clear_path_arrives_at_the_cost_of_the_time_it_takes),
       cmocka_unit_test(a_rollout_to_a_target_inside_an_obstacle_does_not_arrive),
       cmocka_unit_test(a_rollout_meets_an_obstacle_that_comes_too_fast),
+      cmocka_unit_test(an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing),
+      cmocka_unit_test(an_arm_at_rest_still_expects_an_obstacle_that_comes_late),
+      cmocka_unit_test(a_collision_is_judged_by_the_hard_clearance_of_the_settings),
       cmocka_unit_test(the_same_snapshot_gives_the_same_forecast_without_allocation),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -24,14 +24,20 @@ Obstacle random_shape(Random& random, double reach_m) {
   const Vector3 centre = random.inside(-reach_m, reach_m);
   const Matrix3 rotation = random.turn().toRotationMatrix();
   const double largest_m = random.chance(0.1) ? 0.4 * reach_m : 0.1, radius_m = random.uniform(0.01, largest_m);
-  switch (random.index(3)) {
+  switch (random.index(4)) {
     case 0:
       return sphere_obstacle(centre, radius_m);
     case 1:
       return capsule_obstacle(centre, rotation, radius_m, random.uniform(0.01, 0.6));
+    case 2:
+      return cylinder_obstacle(centre, rotation, radius_m, random.uniform(0.01, 0.6));
     default:
       return box_obstacle(centre, rotation, random.inside(0.01, 5.0 * largest_m));
   }
+}
+
+bool is_solid(const Obstacle& obstacle) {
+  return obstacle.shape == Shape::kBox || obstacle.shape == Shape::kCylinder;
 }
 
 Obstacle random_obstacle(Random& random, double reach_m) {
@@ -96,7 +102,7 @@ void normal_points_from_the_obstacle_to_the_arm(void**) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Capsule link = random_shape(random, 0.5).capsule;
     const Obstacle obstacle = random_shape(random, 0.5);
-    const double radius_m = obstacle.shape == Shape::kBox ? 0.0 : obstacle.capsule.radius_m;
+    const double radius_m = is_solid(obstacle) ? 0.0 : obstacle.capsule.radius_m;
     const Proximity pair = measure_pair(link, obstacle);
     check_near_because(pair.on_obstacle + pair.axis_distance_m * pair.normal, pair.on_arm, 1e-9, "trial %d", trial);
     check_near_because(pair.distance_m, pair.axis_distance_m - link.radius_m - radius_m, 1e-15, "trial %d", trial);
@@ -234,11 +240,10 @@ void without_obstacles_there_is_no_nearest_pair(void**) {
 }
 
 /// The distance after time_s to what predict_closest_approach() follows: of a sphere or a capsule the point that is
-/// nearest now, of a box the whole.
+/// nearest now, of a box or cylinder the whole.
 double distance_after_m(const Capsule& link, const Obstacle& obstacle, const Proximity& now, double time_s) {
   const Vector3 shift = time_s * velocity_at(obstacle, now.on_obstacle);
-  Obstacle then =
-      obstacle.shape == Shape::kBox ? obstacle : sphere_obstacle(now.on_obstacle, obstacle.capsule.radius_m);
+  Obstacle then = is_solid(obstacle) ? obstacle : sphere_obstacle(now.on_obstacle, obstacle.capsule.radius_m);
   then.capsule.start += shift;
   then.capsule.end += shift;
   return measure_pair(link, then).distance_m;
@@ -246,7 +251,7 @@ double distance_after_m(const Capsule& link, const Obstacle& obstacle, const Pro
 
 void closest_approach_is_the_least_distance_within_the_horizon(void**) {
   Random random(5);
-  int boxes = 0;
+  int solids = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     const Capsule link = random_shape(random, 0.5).capsule;
     const Obstacle obstacle = random_obstacle(random, 1.0);
@@ -256,14 +261,14 @@ void closest_approach_is_the_least_distance_within_the_horizon(void**) {
     check(approach.time_s >= 0 && approach.time_s <= horizon_s + 1e-12, "trial %d: time %g", trial, approach.time_s);
     check_near_because(distance_after_m(link, obstacle, now, approach.time_s), approach.distance_m, 1e-9, "trial %d",
                        trial);
-    const double slack_m = obstacle.shape == Shape::kBox ? 0.02 : 1e-9;
+    const double slack_m = is_solid(obstacle) ? 0.02 : 1e-9;
     for (int i = 0; i <= 50; ++i)
       check(distance_after_m(link, obstacle, now, i * horizon_s / 50) >= approach.distance_m - slack_m,
             "trial %d, sample %d", trial, i);
     check_near_because(approach.normal.norm(), 1.0, 1e-9, "trial %d", trial);
-    boxes += obstacle.shape == Shape::kBox && approach.time_s > 0.0;
+    solids += is_solid(obstacle) && approach.time_s > 0.0;
   }
-  check(boxes > 100, "only %d boxes come closer", boxes);
+  check(solids > 100, "only %d boxes and cylinders come closer", solids);
 }
 
 void static_obstacles_always_count_and_neither_move_nor_grow(void**) {

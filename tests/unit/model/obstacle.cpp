@@ -111,6 +111,24 @@ void velocity_at_a_point_is_the_derivative_of_that_point(void**) {
   }
 }
 
+void a_cylinder_keeps_its_size_when_it_moves_and_grows(void**) {
+  test::Random random(4);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double radius_m = random.uniform(0.01, 0.5), height_m = random.uniform(0.01, 1.0);
+    Obstacle cylinder = cylinder_obstacle(random.inside(-1, 1), random.turn().toRotationMatrix(), radius_m, height_m);
+    cylinder.velocity_mps = random.inside(-1, 1);
+    cylinder.angular_velocity_radps = random.inside(-2, 2);
+    Obstacle later = extrapolated(cylinder, 0.7);
+    check_near(inflation_m(later), 0.0, 1e-12);
+    later.capsule.radius_m += 0.03;
+    const ConvexSolid solid = solid_of(later);
+    check_near(solid.half_m, Vector3(radius_m, radius_m, height_m / 2), 1e-12);
+    check_near(solid.radius_m, 0.03, 1e-12);
+    check_near(solid.centre, cylinder.capsule.centre() + 0.7 * cylinder.velocity_mps, 1e-12);
+  }
+  assert_true(cylinder_obstacle(Vector3::Zero(), Matrix3::Identity(), 0.2, 1e-6).shape == Shape::kSphere);
+}
+
 }  // namespace
 
 int main() {
@@ -122,6 +140,7 @@ int main() {
       cmocka_unit_test(a_box_keeps_its_edges_in_any_order_and_rotates_rigidly),
       cmocka_unit_test(a_box_without_width_is_stored_as_a_capsule_and_one_without_height_as_a_box),
       cmocka_unit_test(velocity_at_a_point_is_the_derivative_of_that_point),
+      cmocka_unit_test(a_cylinder_keeps_its_size_when_it_moves_and_grows),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "firmware/model/kinematics.h"
+#include "firmware/model/load/load_arm.h"
 #include "tests/support/check.h"
+#include "tests/support/random.h"
 
 using namespace sidestep::sim;
 using sidestep::test::message_of;
@@ -78,6 +81,27 @@ void revolute_continuous_and_prismatic_joints_move_the_tool(void**) {
   check_near(arm.base_from_tool().linear(), Eigen::Matrix3d::Identity(), 1e-15);
 }
 
+/// The kinematics of simulator and controller are independent of each other.
+void links_behind_other_joints_are_where_the_controller_has_them(void**) {
+  const char* urdf = "tests/data/lift_arm.urdf";
+  const std::map<std::string, double> positions = {
+      {"lift", 0.35}, {"left_1", 0.4}, {"left_2", -1.0}, {"left_finger_joint", 0.03}};
+  Arm arm(urdf, "carriage", "tool", {}, positions);
+  const sidestep::Arm controllers = sidestep::load_arm(urdf, "carriage", "tool", {}, positions);
+  sidestep::test::Random random(1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const JointVector q_rad = random.configuration(controllers);
+    arm.place(q_rad);
+    const sidestep::LinkPoses poses = sidestep::forward_kinematics(controllers, q_rad);
+    for (const char* link : {"mast", "left_upper", "left_lower", "hand", "left_finger", "right_finger"})
+      for (const sidestep::LinkShape& shape : controllers.shapes)
+        if (shape.link == link)
+          check_near_because(part_of(arm, link).base_from_part.translation(), transformed(poses, shape).centre(), 1e-9,
+                             "link '%s'", link);
+  }
+  assert_string_equal(message_of([&] { part_of(arm, "head"); }).c_str(), "no part of head");
+}
+
 void bad_arms_are_refused_with_one_line_that_names_the_file(void**) {
   const std::string two = link("base") + link("tip");
   const struct {
@@ -133,6 +157,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(links_below_the_base_and_links_fixed_to_the_base_are_parts),
       cmocka_unit_test(revolute_continuous_and_prismatic_joints_move_the_tool),
+      cmocka_unit_test(links_behind_other_joints_are_where_the_controller_has_them),
       cmocka_unit_test(bad_arms_are_refused_with_one_line_that_names_the_file),
       cmocka_unit_test(eleven_joints_are_refused),
   };

@@ -30,8 +30,8 @@ Row row_at(double t_s, double clearance_m = 0.1, double target_distance_m = 0.5)
   return row;
 }
 
-Command command(int64_t utime, double radps) {
-  return {utime, Eigen::VectorXd::Constant(7, radps)};
+Command command(int64_t utime, int64_t seq, double radps) {
+  return {utime, seq, Eigen::VectorXd::Constant(7, radps), Eigen::VectorXd::Zero(7)};
 }
 
 std::vector<std::string> split(const std::string& line) {
@@ -46,6 +46,7 @@ void a_csv_row_has_every_column_and_full_precision(void**) {
   Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
   Row row = row_at(1.0 / 3.0);
   row.q_rad[1] = 0.1 + 1e-17;
+  row.status.guide_tool_m.col(7) = Eigen::Vector3d(1, 2, 3);
   truth.place(row.q_rad);
   evaluate(row, truth);
   {
@@ -59,7 +60,8 @@ void a_csv_row_has_every_column_and_full_precision(void**) {
   check(!std::getline(in, rest), "more than two lines");
   std::filesystem::remove(file);
   const auto names = split(header), cells = split(values);
-  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 7);
+  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 6 + 8 * 3 + 2);
+  assert_string_equal(names.back().c_str(), "self_clearance_m");
   assert_int_equal(cells.size(), names.size());
   const auto value = [&](const std::string& name) {
     return std::stod(cells[static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
@@ -70,6 +72,7 @@ void a_csv_row_has_every_column_and_full_precision(void**) {
   check_near(value("o2_x_m"), 1, 0);
   check_near(value("clearance_m"), std::min(value("o1_clearance_m"), value("o2_clearance_m")), 0);
   check_near(value("axis_distance_m"), std::min(value("o1_axis_distance_m"), value("o2_axis_distance_m")), 0);
+  check_near(value("guide8_z_m"), 3, 0);
   check_near(value("mode"), 2, 0);
 }
 
@@ -101,6 +104,40 @@ void surroundings_and_other_arms_count_in_the_clearance(void**) {
   assert_int_equal(with_neighbour.broken(expect).size(), 1);
   for (const char* part : {"contact                   YES", "to arms     -0.0100 m"})
     check(with_neighbour.text({}).find(part) != std::string::npos, "no '%s'", part);
+}
+
+void links_that_touch_each_other_are_a_contact(void**) {
+  Truth truth(Arm("urdf/lwa3.urdf", "base_link", "tool"));
+  Row row = row_at(0.25);
+  row.q_rad.setZero();
+  row.q_rad[3] = row.q_rad[5] = 1.97;
+  truth.place(row.q_rad);
+  row.world.obstacles.clear();
+  evaluate(row, truth);
+  Summary summary(10'000);
+  summary.add(row);
+  const std::string text = summary.text({});
+  for (const char* part : {"contact                   YES", "upper_arm_link and hand_link at 0.25 s"})
+    check(text.find(part) != std::string::npos, "no '%s' in: %s", part, text.c_str());
+  Expectations expect;
+  assert_int_equal(summary.broken(expect).size(), 0);
+  expect.clearance_min_m = 0;
+  assert_int_equal(summary.broken(expect).size(), 1);
+  check(summary.broken(expect)[0].find("upper_arm_link and hand_link") != std::string::npos, "%s",
+        summary.broken(expect)[0].c_str());
+}
+
+/// Links may be nearer to each other than the expected clearance to obstacles.
+void near_links_are_no_contact(void**) {
+  Row row = row_at(0, 0.1);
+  row.nearest_links = {0.01, "forearm", "base"};
+  Summary summary(10'000);
+  summary.add(row);
+  Expectations expect;
+  expect.clearance_min_m = 0.05;
+  assert_int_equal(summary.broken(expect).size(), 0);
+  for (const char* part : {"contact                   no", "min between links         0.0100 m   forearm and base"})
+    check(summary.text({}).find(part) != std::string::npos, "no '%s' in: %s", part, summary.text({}).c_str());
 }
 
 void an_unwritable_csv_file_is_refused_with_one_line(void**) {
@@ -140,33 +177,54 @@ void a_result_that_is_not_a_number_breaks_an_expectation(void**) {
   assert_int_equal(summary.broken(expect).size(), 1);
 }
 
-void acceleration_is_computed_over_whole_periods_of_the_commands(void**) {
-  const auto most = [](const std::vector<Command>& commands) {
-    Summary summary(10'000);
-    for (const Command& one : commands) summary.add(one);
-    Expectations expect;
-    expect.joint_acceleration_max_radps2 = -1;
-    return std::stod(summary.broken(expect).at(0).substr(
-        std::string("joint_acceleration_max_radps2: wanted at most -1, got").size()));
-  };
-  check_near(most({command(1'000'000, 0.05), command(1'010'000, 0.1)}), 5, 1e-9);
-  check_near(most({command(1'000'000, 0), command(1'009'000, 0.1)}), 10, 1e-9);     // jitter
-  check_near(most({command(1'000'000, 0), command(1'020'500, 0.1)}), 5, 1e-9);      // one skipped
-  check_near(most({command(1'000'000, 0), command(1'000'000, 0.1)}), 10, 1e-9);     // two controllers
-  check_near(most({command(1'000'000, 0.1), command(1'200'000, -0.3)}), 30, 1e-9);  // after a pause, from rest
+double largest_acceleration_radps2(const std::vector<Command>& commands) {
+  Summary summary(10'000);
+  for (const Command& one : commands) summary.add(one);
+  Expectations expect;
+  expect.joint_acceleration_max_radps2 = -1;
+  return std::stod(
+      summary.broken(expect).at(0).substr(std::string("joint_acceleration_max_radps2: wanted at most -1, got").size()));
 }
 
-/// Commands of a controller with a period of 1 ms, whose time stamps jitter and of which some are lost.
+void acceleration_is_computed_over_the_cycles_between_two_commands(void**) {
+  const auto after = [](int64_t since_us, int64_t cycles, double radps) {
+    return largest_acceleration_radps2({command(1'000'000, 5, 0), command(1'000'000 + since_us, 5 + cycles, radps)});
+  };
+  check_near(after(10'000, 1, 0.1), 10, 1e-9);
+  check_near(after(1'000, 1, 0.1), 10, 1e-9);   // a late cycle, then one on time
+  check_near(after(31'000, 1, 0.1), 10, 1e-9);  // skipped cycles permit no larger step
+  check_near(after(12'000, 2, 0.2), 10, 1e-9);  // a command was lost, and the one before it was late
+  check_near(after(0, 0, 0.1), 10, 1e-9);       // another controller
+  check_near(after(10'000, 1000, 0.1), 10, 1e-9);
+  check_near(after(10'000, -1000, 0.1), 10, 1e-9);
+}
+
+void a_command_stream_starts_between_the_last_command_and_rest(void**) {
+  // A simulator that is started again receives the commands for an arm in motion.
+  check_near(largest_acceleration_radps2({command(1'000'000, 5, 1.4), command(1'010'000, 6, 1.3)}), 10, 1e-9);
+  const auto after_pause = [](double radps) {
+    return largest_acceleration_radps2({command(1'000'000, 5, 0.4), command(1'200'000, 6, radps)});
+  };
+  check_near(after_pause(0), 0, 1e-9);
+  check_near(after_pause(0.4), 0, 1e-9);
+  check_near(after_pause(0.7), 30, 1e-9);
+  check_near(after_pause(-0.3), 30, 1e-9);
+}
+
+/// Commands of a controller with a period of 1 ms, whose time stamps jitter and of which some are lost. The position
+/// catches up with the arm in some of its joints for a while.
 void acceleration_of_a_faster_controller_is_computed_over_its_own_periods(void**) {
   const double period_s = 0.001, acceleration_radps2 = 10.0;
   sidestep::test::Random random(1);
   Summary summary(10'000);
   double q_rad = 1.0, qd_radps = 0.0;
+  Eigen::VectorXd catching_up_rad = Eigen::VectorXd::Zero(7);
   for (int i = 0; i < 2000; ++i) {
     qd_radps += (i % 400 < 200 ? 1.0 : -1.0) * acceleration_radps2 * period_s;
     q_rad += qd_radps * period_s;
-    Command command{1'000'000 + 1000 * i + random.index(300), Eigen::VectorXd::Constant(7, qd_radps)};
-    command.q_rad = Eigen::VectorXd::Constant(7, q_rad);
+    if (i > 500 && i < 600) catching_up_rad.head(3).array() -= 0.7 * qd_radps * period_s;
+    Command command{1'000'000 + 1000 * i + random.index(300), i, Eigen::VectorXd::Constant(7, qd_radps),
+                    Eigen::VectorXd::Constant(7, q_rad) + catching_up_rad};
     if (i % 50 != 49) summary.add(command);
   }
   Expectations expect;
@@ -183,6 +241,7 @@ void the_summary_names_the_closest_pair(void**) {
   scenario.published.axis_distance_m = 0.2154;
   summary.add(row_at(0.5, -0.01));
   const std::string text = summary.text(scenario);
+  check(Summary(10'000).text({}).find("inf") == std::string::npos, "%s", Summary(10'000).text({}).c_str());
   for (const char* part : {"a title", "YES", "-0.0100 m", "forearm and obstacle 42 at 0.50 s", "(paper: 0.2154 m)"}) {
     check(text.find(part) != std::string::npos, "no '%s' in: %s", part, text.c_str());
   }
@@ -194,10 +253,13 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_csv_row_has_every_column_and_full_precision),
       cmocka_unit_test(surroundings_and_other_arms_count_in_the_clearance),
+      cmocka_unit_test(links_that_touch_each_other_are_a_contact),
+      cmocka_unit_test(near_links_are_no_contact),
       cmocka_unit_test(an_unwritable_csv_file_is_refused_with_one_line),
       cmocka_unit_test(expectations_are_checked_over_the_whole_run),
       cmocka_unit_test(a_result_that_is_not_a_number_breaks_an_expectation),
-      cmocka_unit_test(acceleration_is_computed_over_whole_periods_of_the_commands),
+      cmocka_unit_test(acceleration_is_computed_over_the_cycles_between_two_commands),
+      cmocka_unit_test(a_command_stream_starts_between_the_last_command_and_rest),
       cmocka_unit_test(acceleration_of_a_faster_controller_is_computed_over_its_own_periods),
       cmocka_unit_test(the_summary_names_the_closest_pair),
   };

@@ -25,6 +25,7 @@ target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0,
 obstacles:
   - {id: 4, shape: box, edges_m: [0.1, 0.2, 0.3], position_m: [0, 0, 1], velocity_mps: [0, 0, 0], quaternion: [1, 0, 0, 0]}
   - {id: 9, shape: capsule, radius_m: 0.1, length_m: 0.5, position_m: [0, 1, 1], velocity_mps: [0, 0, -1]}
+  - {id: 11, shape: cylinder, radius_m: 0.04, height_m: 0.2, position_m: [1, 1, 1], velocity_mps: [0, 0, 0]}
 expect: {final_distance_max_m: 0.01, clearance_min_m: 0.02}
 published: {axis_distance_m: 0.2}
 )";
@@ -64,13 +65,15 @@ void every_value_of_a_scenario_is_read(void**) {
   assert_true(s.world.target.tracks_orientation);
   check_near(s.world.target.motion.position_m, Vector3d(1, 2, 3), 0);
   check_near(s.world.target.motion.orientation.x(), 1, 0);
-  assert_int_equal(s.world.obstacles.size(), 2);
-  const Obstacle &box = s.world.obstacles[0], &capsule = s.world.obstacles[1];
+  assert_int_equal(s.world.obstacles.size(), 3);
+  const Obstacle &box = s.world.obstacles[0], &capsule = s.world.obstacles[1], &cylinder = s.world.obstacles[2];
   assert_int_equal(box.id, 4);
   check_near(box.solid.size_m, Vector3d(0.1, 0.2, 0.3), 0);
   assert_true(capsule.solid.shape == Shape::kCapsule);
   check_near(capsule.solid.size_m, Vector3d(0.1, 0.5, 0), 0);
   check_near(capsule.motion.velocity_mps, Vector3d(0, 0, -1), 0);
+  assert_true(cylinder.solid.shape == Shape::kCylinder);
+  check_near(cylinder.solid.size_m, Vector3d(0.04, 0.2, 0), 0);
   check_near(*s.expect.clearance_min_m, 0.02, 0);
   assert_false(s.expect.axis_distance_min_m.has_value());
   check_near(*s.published.axis_distance_m, 0.2, 0);
@@ -185,6 +188,7 @@ const Mistake kMistakes[] = {
     {"shape: box", "shape: cone", "obstacles[0].shape", "'cone'"},
     {"shape: box", "shape: sphere", "obstacles[0].radius_m", "missing"},
     {"radius_m: 0.1", "radius_m: 0", "obstacles[1].radius_m", "from 0.0001"},
+    {"height_m: 0.2", "length_m: 0.2", "obstacles[2].height_m", "missing"},
     {"length_m: 0.5", "length_m: 0.5, edges_m: [1, 1, 1]", "obstacles[1].edges_m", "unknown key"},
     {"edges_m: [0.1, 0.2, 0.3]", "edges_m: [0.1, -0.2, 0.3]", "obstacles[0].edges_m[1]", "is -0.2"},
     {"  - {id: 4", "  - 7\n  - {id: 4", "obstacles[0]", "mapping"},

@@ -4,6 +4,7 @@
 
 #include "tests/support/check.h"
 #include "tests/support/random.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep::sim;
 using Eigen::Isometry3d;
@@ -121,6 +122,57 @@ void distances_are_continuous_from_separated_to_penetrating(void**) {
   }
 }
 
+/// A box of these edges around the origin, as a mesh.
+Solid box_mesh(const Vector3d& edges_m) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    text += "v";
+    for (int k = 0; k < 3; ++k) text += ' ' + std::to_string((i >> k & 1 ? 0.5 : -0.5) * edges_m[k]);
+    text += '\n';
+  }
+  for (const char* face :
+       {"1 2 4", "1 4 3", "5 7 8", "5 8 6", "1 5 6", "1 6 2", "3 4 8", "3 8 7", "1 3 7", "1 7 5", "2 6 8", "2 8 4"})
+    text += std::string("f ") + face + '\n';
+  return load_mesh_solid(sidestep::test::scratch_file("box.obj", text), "any.urdf", {}, {1, 1, 1}).solid;
+}
+
+void meshes_of_bars_have_the_distances_of_the_bars(void**) {
+  Random random(3);
+  const Vector3d edges_m(0.1, 0.12, 0.4);
+  const Solid bar{Shape::kBox, edges_m}, mesh = box_mesh(edges_m);
+  int touching = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Isometry3d base_from_a = random_pose(random), base_from_b = random_pose(random);
+    const double expected_m = signed_distance_m(bar, base_from_a, bar, base_from_b);
+    const double distance_m = signed_distance_m(mesh, base_from_a, mesh, base_from_b);
+    if (expected_m > 0.0) check_near_because(distance_m, expected_m, 5e-3, "trial %d", trial);
+    if (expected_m < -5e-3) check(distance_m <= 0.0, "trial %d: %g, of bars %g", trial, distance_m, expected_m);
+    touching += distance_m <= 0.0;
+  }
+  check(touching > 100, "only %d touch", touching);
+}
+
+void distances_below_the_range_do_not_depend_on_it(void**) {
+  Random random(4);
+  const Solid mesh = box_mesh({0.05, 0.06, 0.4});
+  int near = 0, far = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const Solid a = random.chance(0.3) ? mesh : random_solid(random),
+                b = random.chance(0.3) ? mesh : random_solid(random);
+    const Isometry3d base_from_a = random_pose(random), base_from_b = random_pose(random);
+    const double full_m = signed_distance_m(a, base_from_a, b, base_from_b), range_m = random.uniform(0.0, 0.2);
+    const double distance_m = signed_distance_m(a, base_from_a, b, base_from_b, range_m);
+    if (full_m < range_m) {
+      check_near_because(distance_m, full_m, 1e-6, "trial %d", trial);
+      ++near;
+    } else {
+      check(distance_m >= range_m - 1e-9 && distance_m > 0.0, "trial %d: %g, range %g", trial, distance_m, range_m);
+      ++far;
+    }
+  }
+  check(near > 500 && far > 500, "%d near, %d far", near, far);
+}
+
 }  // namespace
 
 int main() {
@@ -128,6 +180,8 @@ int main() {
       cmocka_unit_test(distances_agree_with_hand_computed_ones),
       cmocka_unit_test(distances_are_finite_and_within_their_bounds),
       cmocka_unit_test(distances_are_continuous_from_separated_to_penetrating),
+      cmocka_unit_test(meshes_of_bars_have_the_distances_of_the_bars),
+      cmocka_unit_test(distances_below_the_range_do_not_depend_on_it),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

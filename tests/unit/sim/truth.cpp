@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
+#include "firmware/model/link_proximity.h"
+#include "firmware/model/load/load_arm.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 #include "tests/support/scratch.h"
@@ -191,6 +194,133 @@ void links_as_obstacles_are_in_the_frame_of_the_other_arm(void**) {
   }
 }
 
+/// "first second" of every judged pair of links, each pair in both orders.
+std::set<std::string> judged_pairs(const Truth& truth) {
+  std::set<std::string> names;
+  for (const ArmPart& a : truth.arm().parts())
+    for (const ArmPart& b : truth.arm().parts())
+      if (truth.self_distance().judges(truth.arm(), a.link, b.link)) names.insert(a.link + ' ' + b.link);
+  return names;
+}
+
+void links_of_the_lwa3_that_can_meet_are_judged(void**) {
+  const std::set<std::string> expected{"base_link forearm_link",   "forearm_link base_link",
+                                       "base_link hand_link",      "hand_link base_link",
+                                       "upper_arm_link hand_link", "hand_link upper_arm_link"};
+  assert_true(judged_pairs(lwa3()) == expected);
+}
+
+void a_folded_lwa3_touches_itself_and_a_straight_one_does_not(void**) {
+  Truth truth = lwa3();
+  truth.place(JointVector::Zero(7));
+  // The hand's lower end is the elbow's height plus the forearm's length from the upper arm's upper end.
+  check_near(truth.nearest_links().clearance_m, 0.2765 - 0.1, 1e-9);
+  assert_false(truth.nearest_links(0.1).touch());
+  check_near(truth.nearest_links(0.1).clearance_m, kNothingNear, 0);
+
+  JointVector folded_rad = JointVector::Zero(7);
+  folded_rad[3] = folded_rad[5] = 1.97;  // the hand returns to the upper arm
+  truth.place(folded_rad);
+  const NearestLinks nearest = truth.nearest_links();
+  check(nearest.touch(), "%g m between %s and %s", nearest.clearance_m, nearest.first.c_str(), nearest.second.c_str());
+  assert_string_equal(nearest.first.c_str(), "upper_arm_link");
+  assert_string_equal(nearest.second.c_str(), "hand_link");
+}
+
+/// As the distance of the axes, which are segments of the D-H table's polyline.
+void distances_between_links_agree_with_capsules_in_random_configurations(void**) {
+  Truth truth = lwa3();
+  Random random(4);
+  int touching = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    JointVector q_rad = random.joints(7, -1.97, 1.97);
+    if (trial % 2 == 0) q_rad[3] = random.uniform(1.7, 1.97), q_rad[4] *= 0.2, q_rad[5] = random.uniform(1.7, 1.97);
+    truth.place(q_rad);
+    const auto s = stations(q_rad);
+    const std::array<Vector3d, 5> corners{Vector3d::Zero(), s[0], s[1], s[2], s[3]};
+    double axes_m = kNothingNear;
+    for (size_t a = 0; a < 4; ++a) {
+      for (size_t b = a + 2; b < 4; ++b) {
+        for (int i = 0; i <= 2000; ++i) {  // the error of the sampled distance is at most the square of a step
+          const Vector3d p = corners[a] + i / 2000.0 * (corners[a + 1] - corners[a]);
+          axes_m = std::min(axes_m, to_segment_m(p, corners[b], corners[b + 1]));
+        }
+      }
+    }
+    const NearestLinks nearest = truth.nearest_links();
+    touching += nearest.touch();
+    if (std::abs(axes_m - 0.1) > 1e-3) check(nearest.touch() == (axes_m < 0.1), "trial %d", trial);
+    if (axes_m > 0.101) check_near_because(nearest.clearance_m, axes_m - 0.1, 2e-4, "trial %d", trial);
+  }
+  check(touching > 20, "only %d touch", touching);
+}
+
+const char* const kArm8 = "tests/data/arm8.urdf";
+
+void links_of_one_body_or_of_adjacent_ones_are_not_judged(void**) {
+  const Truth truth(Arm(kArm8, "mount", "flange"));
+  const std::set<std::string> pairs = judged_pairs(truth);
+  for (const char* pair :
+       {"pedestal mount", "pedestal s1", "mount s1", "s1 s2_bracket", "s2_bracket s3", "s2_bracket camera", "s3 camera",
+        "camera lens", "palm finger_left", "finger_left finger_right", "s7 palm", "s7 finger_left"})
+    check(pairs.count(pair) == 0, "%s", pair);
+  for (const char* pair : {"pedestal palm", "s1 camera", "s1 palm", "lens palm", "s2_bracket finger_left", "s3 s7"})
+    check(pairs.count(pair) == 1, "%s", pair);
+}
+
+void links_that_touch_by_construction_are_not_judged(void**) {
+  Truth truth(Arm(kArm8, "mount", "flange"));
+  Random random(5);
+  int contacts = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    JointVector q_rad = truth.arm().lower();
+    for (int i = 0; i < q_rad.size(); ++i) q_rad[i] = random.uniform(q_rad[i], truth.arm().upper()[i]);
+    truth.place(q_rad);
+    contacts += truth.nearest_links(0.0).touch();
+  }
+  check(contacts > 10 && contacts < 290, "%d of 300 postures with contact", contacts);
+}
+
+void the_srdf_beside_the_urdf_exempts_no_pair_from_judgement(void**) {
+  const std::string urdf = sidestep::test::scratch_file("exempt.urdf", sidestep::test::text_of("urdf/lwa3.urdf"));
+  sidestep::test::scratch_file("exempt.srdf",
+                               R"(<robot name="lwa3"><disable_collisions link1="upper_arm_link" link2="hand_link"
+                                  reason="Never"/></robot>)");
+  assert_true(judged_pairs(Truth(Arm(urdf, "base_link", "tool"))) == judged_pairs(lwa3()));
+}
+
+/// Below 4 cm the controller's distances are exact.
+void distances_between_links_agree_with_the_exact_shapes_of_the_controller(void**) {
+  Truth truth(Arm(kArm8, "mount", "flange"));
+  const sidestep::Arm arm = sidestep::load_arm(kArm8, "mount", "flange");
+  Random random(6);
+  int near = 0, touching = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const JointVector q_rad = random.configuration(arm);
+    const sidestep::LinkPoses poses = sidestep::forward_kinematics(arm, q_rad);
+    double least_m = kNothingNear;
+    for (const sidestep::LinkShape& a : arm.shapes) {
+      for (const sidestep::LinkShape& b : arm.shapes) {
+        if (&a >= &b || !truth.self_distance().judges(truth.arm(), a.link, b.link)) continue;
+        const sidestep::Capsule around_a = transformed(poses, a), around_b = transformed(poses, b);
+        least_m = std::min(least_m, sidestep::measure_pair({a, poses, around_a}, {b, poses, around_b}).distance_m);
+      }
+    }
+    truth.place(q_rad);
+    const NearestLinks nearest = truth.nearest_links(0.1);
+    if (least_m < -1e-3) check(nearest.touch(), "trial %d: %g m, controller %g m", trial, nearest.clearance_m, least_m);
+    if (least_m < 0.0) ++touching;
+    if (least_m < 1e-3) continue;
+    if (least_m < sidestep::kExact_m) {
+      check_near_because(nearest.clearance_m, least_m, 1e-3, "trial %d", trial);
+      ++near;
+    } else {
+      check(nearest.clearance_m > sidestep::kExact_m - 1e-3, "trial %d: %g m", trial, nearest.clearance_m);
+    }
+  }
+  check(near > 50 && touching > 50, "%d near, %d touching", near, touching);
+}
+
 }  // namespace
 
 int main() {
@@ -204,6 +334,13 @@ int main() {
       cmocka_unit_test(a_finger_below_the_tool_counts_for_clearance),
       cmocka_unit_test(clearance_of_boxes_and_capsules_agrees_with_hand_computed_ones),
       cmocka_unit_test(the_nearest_obstacle_has_the_smallest_clearance),
+      cmocka_unit_test(links_of_the_lwa3_that_can_meet_are_judged),
+      cmocka_unit_test(a_folded_lwa3_touches_itself_and_a_straight_one_does_not),
+      cmocka_unit_test(distances_between_links_agree_with_capsules_in_random_configurations),
+      cmocka_unit_test(links_of_one_body_or_of_adjacent_ones_are_not_judged),
+      cmocka_unit_test(links_that_touch_by_construction_are_not_judged),
+      cmocka_unit_test(the_srdf_beside_the_urdf_exempts_no_pair_from_judgement),
+      cmocka_unit_test(distances_between_links_agree_with_the_exact_shapes_of_the_controller),
       cmocka_unit_test(without_obstacles_the_clearance_is_infinite),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -73,7 +73,7 @@ void every_witness_keeps_limits_and_clearance(void**) {
       const double clearance_m = truth.clearance_m(finding.scene, path.at(t_s), t_s);
       check(clearance_m >= 0.01 - 1e-6 && clearance_m >= finding.witness_clearance_m - 1e-6, "%g m at %g s",
             clearance_m, t_s);
-      check(self_clearance_m(lwa3_arm().pose(path.at(t_s))) >= 0.02, "self-collision at %g s", t_s);
+      check(lwa3_arm().self_clearance(lwa3_arm().pose(path.at(t_s))) >= 0.02, "self-collision at %g s", t_s);
     }
     check(check_of.violation().empty(), "%s", check_of.violation().c_str());
   }

@@ -100,11 +100,12 @@ void the_start_is_within_the_limits_and_free_of_self_collision(void**) {
   for (const SearchScene& scene : scenes()) {
     check((limits().upper_rad - scene.start_rad).minCoeff() >= 0.0, "above a limit");
     check((scene.start_rad - limits().lower_rad).minCoeff() >= 0.0, "below a limit");
-    check(self_clearance_m(lwa3_arm().pose(scene.start_rad)) >= 0.02, "self-collision");
+    check(lwa3_arm().self_clearance(lwa3_arm().pose(scene.start_rad)) >= 0.02, "self-collision");
   }
   Joints folded_rad = Joints::Zero(7);
   folded_rad[1] = folded_rad[3] = folded_rad[5] = 1.97;  // the hand returns to the upper arm
-  check(self_clearance_m(lwa3_arm().pose(folded_rad)) < 0.02, "%g m", self_clearance_m(lwa3_arm().pose(folded_rad)));
+  const double folded_m = lwa3_arm().self_clearance(lwa3_arm().pose(folded_rad));
+  check(folded_m < 0.02, "%g m", folded_m);
 }
 
 void the_same_seed_gives_the_same_scene_and_a_mutation_another(void**) {

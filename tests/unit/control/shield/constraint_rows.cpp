@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "firmware/model/load/self_pairs.h"
+#include "firmware/model/turning_proximity.h"
 #include "tests/support/check.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
@@ -21,8 +22,6 @@ constexpr double kStep_rad = 1e-6;
 constexpr double kTolerance = 1e-6;
 constexpr double kKink_m = 0.01;  // for axes nearer than this the distance is too curved to differentiate
 
-using Pairs = std::vector<std::pair<int, int>>;
-
 const ShieldSettings kSettings;
 
 VelocityRange range_of(double radps) {
@@ -31,11 +30,11 @@ VelocityRange range_of(double radps) {
 
 /// A configuration among obstacles, and its constraint rows.
 struct Scene {
-  JointVector q_rad, last_radps = JointVector::Zero(7);
+  JointVector q_rad, last_radps = JointVector::Zero(7), nominal_radps = JointVector::Zero(7);
   LinkPoses poses;
   std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
   Clearance clearance;
-  Pairs self_pairs;
+  std::vector<SelfPair> self_pairs;
 
   explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {
     for (const LinkShape& shape : lwa3().shapes) clearance.links.add(transformed(poses, shape));
@@ -45,7 +44,7 @@ struct Scene {
   RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
     const ShieldInput now{lwa3(), poses, q_rad, last_radps, clearance, view, self_pairs, last_radps, 0.01, 1.0};
-    return make_rows(kSettings, now, sustainable, range);
+    return make_rows(kSettings, now, sustainable, range, nominal_radps);
   }
   ConstraintRows rows(const VelocityRange& range, bool hard_only = false) const {
     const RowSets rows = row_sets(range, range);
@@ -236,6 +235,7 @@ void a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point(void**) {
     turning.velocity_mps.setZero();
     turning.angular_velocity_radps = random.inside(-2, 2);
     Scene scene(q_rad);
+    scene.add(turning);
     const NearPair pair = pair_of(scene.poses, shape, 0, turning);
     Obstacle translating = turning;
     translating.velocity_mps = pair.velocity_mps;
@@ -248,30 +248,103 @@ void a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point(void**) {
   check(seen > 100, "only %d", seen);
 }
 
+/// Rotation vector of a body's motion while the arm brakes from its last velocity, by finite differences.
+Vector3 turn_while_braking(const Scene& scene, int body) {
+  const double braking_s = (scene.last_radps.array().abs() / lwa3().limits.acceleration_radps2.array()).maxCoeff();
+  const LinkPoses after = forward_kinematics(lwa3(), scene.q_rad + 1e-6 * scene.last_radps);
+  const auto index = static_cast<size_t>(body);
+  const Eigen::AngleAxisd turn(Matrix3(after.rotation[index] * scene.poses.rotation[index].transpose()));
+  return braking_s / 1e-6 * turn.angle() * turn.axis();
+}
+
+void turning_links_have_hard_rows_for_the_next_points(void**) {
+  Random random(8);
+  int seen = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    const int shape = moving_shape(random), body = shape_of(shape).body;
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    obstacle.velocity_mps.setZero();
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    if (pair.now.distance_m > kSettings.range_m) continue;
+    const int without = scene.rows_of(pair, true).size();
+    scene.last_radps = random.joints(7, -1.5, 1.5);
+    const ConstraintRows rows = scene.rows_of(pair, true);
+    if (obstacle.capsule.is_sphere()) {
+      assert_int_equal(rows.size(), without);
+      continue;
+    }
+    const PosedShape link{shape_of(shape), scene.poses, scene.clearance.links[shape]};
+    for (const Proximity& next : proximities_after_turn(link, obstacle, pair.now, turn_while_braking(scene, body))) {
+      if (next.distance_m > kSettings.range_m) continue;
+      const JointVector expected = point_jacobian(scene.poses, body, next.on_arm).transpose() * next.normal;
+      if (!joints_matter(expected)) continue;
+      const double bound = hard_bound(expected, next.distance_m - kSettings.hard_clearance_m);
+      const bool found = std::any_of(rows.begin(), rows.end(), [&](const ConstraintRow& row) {
+        return (row.row - expected).norm() < 1e-4 && std::abs(row.bound - bound) < 1e-4;
+      });
+      check(found, "trial %d", trial);
+      ++seen;
+    }
+  }
+  check(seen > 300, "only %d", seen);
+}
+
 void rows_of_self_pairs_are_the_gradients_of_their_distances(void**) {
-  const Pairs pairs = find_self_pairs(lwa3());
+  const std::vector<SelfPair> pairs = find_self_pairs(lwa3(), 0.02).kept;
   Random random(5);
   int seen = 0;
   for (int trial = 0; trial < 500; ++trial) {
     Scene scene(random.configuration(lwa3()));
-    for (const auto& [a, b] : pairs) {
+    for (const auto& [a, b, clearance_m] : pairs) {
       const auto distance = [a = a, b = b](const LinkPoses& poses) {
         return measure_pair(transformed(poses, shape_of(a)), transformed(poses, shape_of(b)));
       };
       const Proximity now = distance(scene.poses);
       if (now.axis_distance_m < kKink_m) continue;
-      scene.self_pairs = {{a, b}};
+      scene.self_pairs = {{a, b, clearance_m}};
       const ConstraintRows rows = scene.rows(range_of(1e9));
       const JointVector expected =
           gradient(scene.q_rad, [&](const LinkPoses& poses) { return distance(poses).distance_m; });
       if (!joints_matter(expected)) continue;
       assert_int_equal(rows.size(), 1);
       check_near_because(rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
-      check_near(rows[0].bound, hard_bound(rows[0].row, now.distance_m - kSettings.self_clearance_m), 1e-9);
+      const double room_m = now.distance_m >= clearance_m         ? now.distance_m - clearance_m
+                            : now.distance_m >= clearance_m / 2.0 ? 0.0
+                                                                  : now.distance_m - clearance_m / 2.0;
+      check_near(rows[0].bound, hard_bound(rows[0].row, room_m), 1e-9);
       ++seen;
     }
   }
   check(seen > 600, "only %d", seen);
+}
+
+void the_links_with_the_least_room_are_reported_and_limit_what_brings_them_together(void**) {
+  const std::vector<SelfPair> pairs = find_self_pairs(lwa3(), 0.02).kept;
+  Random random(9);
+  int limited = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    scene.self_pairs = pairs;
+    scene.nominal_radps = random.joints(7, -30, 30);
+    const RowSets rows = scene.row_sets(range_of(1e9), range_of(1e9));
+    double least_room_m = std::numeric_limits<double>::infinity(), distance_m = 0.0;
+    bool violated = false;
+    for (const auto& [a, b, clearance_m] : pairs) {
+      const Proximity now = measure_pair(transformed(scene.poses, shape_of(a)), transformed(scene.poses, shape_of(b)));
+      if (now.distance_m - clearance_m < least_room_m)
+        least_room_m = now.distance_m - clearance_m, distance_m = now.distance_m;
+    }
+    for (const ConstraintRow& row : rows.plan) violated |= row.row.dot(scene.nominal_radps) < row.bound - 1e-4;
+    check_near(rows.nearest_links.distance_m, distance_m, 1e-12);
+    assert_true(rows.nearest_links.first >= 0 && rows.nearest_links.second >= 0);
+    assert_int_equal(rows.links_limit, violated);
+    limited += violated;
+  }
+  check(limited > 20 && limited < 480, "%d of 500", limited);
+  const RowSets none = Scene(JointVector::Zero(7)).row_sets(range_of(1), range_of(1));
+  assert_true(std::isnan(none.nearest_links.distance_m) && none.nearest_links.first == -1 && !none.links_limit);
 }
 
 double worst_shortfall(const ConstraintRow& row, const VelocityRange& range) {
@@ -300,16 +373,20 @@ bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kep
   for (const ConstraintRow& row : all)
     if (worst_shortfall(row, range) > 0.0) relevant.push_back(row);
   assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(relevant.size())));
-  double least_kept = 1e9, most_skipped = 0.0;
+  const auto less_urgent = [&](const ConstraintRow& a, const ConstraintRow& b) {
+    return a.tier != b.tier ? a.tier > b.tier : worst_shortfall(a, range) < worst_shortfall(b, range) - 1e-12;
+  };
+  const ConstraintRow *least_kept = nullptr, *most_skipped = nullptr;
   for (const ConstraintRow& row : relevant) {
     const bool is_kept =
         std::any_of(kept.begin(), kept.end(), [&](const ConstraintRow& one) { return same(one, row); });
-    if (is_kept)
-      least_kept = std::min(least_kept, worst_shortfall(row, range));
-    else
-      most_skipped = std::max(most_skipped, worst_shortfall(row, range));
+    if (is_kept && (!least_kept || less_urgent(row, *least_kept))) least_kept = &row;
+    if (!is_kept && (!most_skipped || less_urgent(*most_skipped, row))) most_skipped = &row;
   }
-  check(most_skipped <= least_kept + 1e-12, "trial %d: skipped %g, kept %g", trial, most_skipped, least_kept);
+  if (most_skipped)
+    check(!less_urgent(*least_kept, *most_skipped), "trial %d: skipped %g of tier %d, kept %g of tier %d", trial,
+          worst_shortfall(*most_skipped, range), static_cast<int>(most_skipped->tier),
+          worst_shortfall(*least_kept, range), static_cast<int>(least_kept->tier));
   return relevant.size() > kMaxRows;
 }
 
@@ -357,7 +434,9 @@ int main() {
       cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),
+      cmocka_unit_test(turning_links_have_hard_rows_for_the_next_points),
       cmocka_unit_test(rows_of_self_pairs_are_the_gradients_of_their_distances),
+      cmocka_unit_test(the_links_with_the_least_room_are_reported_and_limit_what_brings_them_together),
       cmocka_unit_test(only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -65,7 +65,9 @@ struct Scene {
     const ShieldSettings& settings = model().settings.shield;
     return {rest, jacobian, settings.tool_weight, settings.comfort_least_weight};
   }
-  ConstraintRows rows() const { return make_rows(model().settings.shield, input(), range, range).plan; }
+  ConstraintRows rows() const {
+    return make_rows(model().settings.shield, input(), range, range, JointVector::Zero(7)).plan;
+  }
   JointVector planned() const { return solve(rows(), range, objective()).velocity_radps; }
   Plan evaded() const { return evade(model().settings.shield, input(), rows(), range, objective(), planned()); }
 
@@ -169,6 +171,43 @@ void equal_inputs_give_equal_evasions(void**) {
   }
 }
 
+/// 24 small spheres at rest, too far away to matter, in front of the list of obstacles or behind it.
+Scene with_decoys(const Scene& threatened, bool in_front, unsigned seed) {
+  Random random(seed);
+  Scene scene(threatened.q_rad);
+  const int threats = threatened.set->count;
+  const auto add = [&](const Obstacle& obstacle) {
+    scene.set->obstacles[static_cast<size_t>(scene.set->count++)] = obstacle;
+  };
+  const auto add_threats = [&] {
+    for (int i = 0; i < threats; ++i) add(threatened.set->obstacles[static_cast<size_t>(i)]);
+  };
+  if (!in_front) add_threats();
+  for (int decoys = 0; decoys < 24;) {
+    const Obstacle decoy = sphere_obstacle(random.inside(-1.0, 1.3), 0.01);
+    const double distance_m = clearance_after(model().arm, scene.poses, &decoy, 1, 0.0, 1.0);
+    if (distance_m < 0.25 || distance_m > 0.38) continue;
+    add(decoy);
+    ++decoys;
+  }
+  if (in_front) add_threats();
+  scene.measure();
+  return scene;
+}
+
+void decoys_in_front_of_the_list_do_not_change_the_evasion(void**) {
+  Random random(5);
+  int evasions = 0;
+  for (unsigned trial = 0; trial < 300; ++trial) {
+    const Scene scene = threatened_scene(random);
+    const Plan behind = with_decoys(scene, false, trial).evaded(), in_front = with_decoys(scene, true, trial).evaded();
+    evasions += behind.evading;
+    assert_int_equal(in_front.evading, behind.evading);
+    check_near_because(in_front.velocity_radps, behind.velocity_radps, 1e-6, "trial %u", trial);
+  }
+  check(evasions > 20, "only %d evasions", evasions);
+}
+
 }  // namespace
 
 int main() {
@@ -177,6 +216,7 @@ int main() {
       cmocka_unit_test(the_evasion_is_within_the_range_and_keeps_more_clearance_than_the_plan),
       cmocka_unit_test(the_evasion_of_the_previous_cycle_is_kept),
       cmocka_unit_test(equal_inputs_give_equal_evasions),
+      cmocka_unit_test(decoys_in_front_of_the_list_do_not_change_the_evasion),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

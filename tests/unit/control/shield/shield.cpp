@@ -55,7 +55,9 @@ struct Scene {
   ShieldResult shielded() const {
     return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);
   }
-  ConstraintRows hard_rows() const { return make_rows(model().settings.shield, input(), sustainable, range).step; }
+  ConstraintRows hard_rows() const {
+    return make_rows(model().settings.shield, input(), sustainable, range, JointVector::Zero(7)).step;
+  }
 
   void add(const Capsule& capsule, const Vector3& velocity_mps = Vector3::Zero()) {
     set.obstacles[static_cast<size_t>(set.count)] = {set.count, Shape::kCapsule, capsule, velocity_mps,
@@ -262,7 +264,8 @@ void without_obstacles_a_nominal_velocity_within_range_is_unchanged(void**) {
                                               std::min(scene.sustainable.upper_radps[i], scene.range.upper_radps[i]));
     if (!within(scene.range, scene.nominal_radps) || !within(scene.sustainable, scene.nominal_radps)) continue;
     const ConstraintRows rows =
-        make_rows(model().settings.shield, scene.input(), scene.sustainable, scene.sustainable).step;
+        make_rows(model().settings.shield, scene.input(), scene.sustainable, scene.sustainable, JointVector::Zero(7))
+            .step;
     if (worst_shortfall(rows, scene.nominal_radps) > 0.0) continue;
     const ShieldResult given = scene.shielded();
     check_near_because(given.velocity_radps, scene.nominal_radps, 0.0, "state %d", trial);

@@ -14,9 +14,10 @@ namespace {
 /// Weight of the squared slack of the pass rows, s2/m2.
 constexpr double kPassWeight = 1.0 / (3e-2 * 3e-2);
 
-/// A random programme. middle_radps is within the range and meets all hard rows; the other rows may conflict.
+/// A random programme, a third of them with prismatic joints. middle_radps is within the range and meets all hard rows;
+/// the other rows may conflict.
 struct Programme {
-  JointVector nominal_radps, middle_radps;
+  JointVector nominal_radps, middle_radps, scale;
   TaskJacobian tool_jacobian;
   VelocityRange range;
   ConstraintRows rows;
@@ -37,10 +38,14 @@ struct Programme {
         rows.add({row, row.dot(middle_radps) + random.uniform(-0.5, 0.5),
                   random.chance(0.5) ? Tier::kPass : Tier::kComfort});
     }
+    scale = JointVector::Ones(joints);
+    if (random.chance(0.67)) return;
+    for (double& of_joint : scale)
+      if (random.chance(0.3)) of_joint = 0.25;
   }
 
   QpSolution solution() const {
-    return solve(rows, range, {nominal_radps, tool_jacobian, tool_weight, comfort_weight});
+    return solve(rows, range, {nominal_radps, tool_jacobian, tool_weight, comfort_weight, &scale});
   }
 
   bool has_pass_rows() const {
@@ -48,7 +53,8 @@ struct Programme {
   }
   double objective(const JointVector& velocity_radps) const {
     const JointVector change_radps = velocity_radps - nominal_radps;
-    return 0.5 * (change_radps.squaredNorm() + tool_weight * (tool_jacobian * change_radps).squaredNorm());
+    return 0.5 * (change_radps.cwiseQuotient(scale).squaredNorm() +
+                  tool_weight * (tool_jacobian * change_radps).squaredNorm());
   }
   double slack_mps(Tier tier, const JointVector& velocity_radps) const {
     double most_mps = 0.0;

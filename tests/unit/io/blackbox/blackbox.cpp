@@ -39,10 +39,11 @@ struct RecordedRun {
   Config config = load_config("firmware/config/lwa3.yaml", {});
   std::atomic<bool> requested{false};
   std::unique_ptr<Blackbox> blackbox;
-  NetworkInputs inputs{config.model.settings, 7, *config.dialect, {}, false};
+  NetworkInputs inputs{config.model.settings, config.model.arm, *config.dialect, {}, false};
   Encoder encoder{config.model.arm, *config.dialect};
   Received<ArmState> arm;
   Received<Target> target;
+  Received<OtherJoints> other_joints;
   std::unique_ptr<Received<ObstacleSet>> obstacles = std::make_unique<Received<ObstacleSet>>();
   State state;
   ArmState now{0, test::home_rad(), JointVector::Zero(7)};  ///< follows the commands
@@ -93,7 +94,7 @@ struct RecordedRun {
     const Packet status = encoder.encode(recorded.report, recorded.record);
     statuses.emplace_back(status.bytes, status.bytes + status.size);
     const int64_t before = test::allocation_count();
-    blackbox->record({arm, target, *obstacles}, recorded);
+    blackbox->record({arm, target, *obstacles, other_joints}, recorded);
     assert_int_equal(test::allocation_count() - before, 0);
   }
 

@@ -1,5 +1,6 @@
 #include "firmware/io/config/config.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -9,6 +10,7 @@
 
 using namespace sidestep;
 using test::message_of;
+using test::one_line_with;
 using test::replaced;
 using test::scratch_file;
 using test::text_of;
@@ -20,6 +22,65 @@ const char kRobot[] = "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool}
 /// Loads a configuration of the LWA3 with additional YAML text.
 Config load(const std::string& yaml) {
   return load_config(scratch_file("config.yaml", kRobot + yaml), {});
+}
+
+/// One number is in rad and counts for the revolute joints; a list has each joint's own unit.
+void one_limit_for_all_joints_leaves_the_prismatic_ones_as_they_are(void**) {
+  const std::string robot = "robot: {urdf: tests/data/lift_arm.urdf, base: mast, tip: tool}\n";
+  const auto limits_of = [&](const std::string& limits) {
+    return load_config(scratch_file("lift.yaml", robot + "limits: {" + limits + "}\n"), {}).model.arm.limits;
+  };
+  const JointLimits one = limits_of("velocity_radps: 1.5, acceleration_radps2: 5, lower_rad: -1, upper_rad: 1");
+  check_near(one.velocity_radps[0], 0.3, 0);
+  check_near(one.acceleration_radps2[0], kDefaultAcceleration_mps2, 0);
+  check_near(one.lower_rad[0], 0.0, 0);
+  check_near(one.upper_rad[0], 0.6, 0);
+  check_near(one.velocity_radps[1], 1.5, 0);
+  check_near(one.upper_rad[7], 1.0, 0);
+  check_near(limits_of("velocity_radps: [0.2, 1, 1, 1, 1, 1, 1, 1]").velocity_radps[0], 0.2, 0);
+}
+
+void positions_of_other_joints_are_read_and_the_others_are_warned_of(void**) {
+  const auto load_with = [](const std::string& positions) {
+    return load_config(scratch_file("others.yaml",
+                                    "robot: {urdf: tests/data/lift_arm.urdf, base: mast, tip: tool, "
+                                    "joint_positions: {" +
+                                        positions + "}}\n"),
+                       {});
+  };
+  const Config config = load_with("left_1: 0.5, left_finger_joint: 0.02");
+  assert_int_equal(config.robot.joint_positions.size(), 2);
+  const auto has = [&](const char* text) {
+    return std::any_of(config.warnings.begin(), config.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+  };
+  assert_true(has("'head_joint'") && has("'left_2'"));
+  assert_false(has("'left_1'") || has("finger"));
+  for (const auto& [positions, complaint] : std::vector<std::pair<std::string, std::string>>{
+           {"neck: 0.1", "robot.joint_positions.neck: the URDF has no such joint"},
+           {"head_joint: 2", "robot.joint_positions.head_joint: is 2, the joint moves from -0.5 to 1.2"},
+           {"lift: 0.1", "robot.joint_positions.lift: is a joint of the chain"},
+           {"head_joint: up", "robot.joint_positions.head_joint: must be a number"}}) {
+    const std::string error = message_of([&, &text = positions] { load_with(text); });
+    check(test::one_line_with(error, {"others.yaml", complaint}), "%s", error.c_str());
+  }
+}
+
+/// 30 rad/s are 7.5 m/s.
+void a_limit_that_limits_nothing_is_judged_in_the_unit_of_its_joint(void**) {
+  const std::string robot = "robot: {urdf: tests/data/lift_arm.urdf, base: mast, tip: tool}\n";
+  const auto warnings_of = [&](const std::string& lift_mps) {
+    return load_config(
+               scratch_file("lift.yaml", robot + "limits: {velocity_radps: [" + lift_mps + ", 2, 2, 2, 2, 2, 2, 2]}\n"),
+               {})
+        .warnings;
+  };
+  const auto has = [](const std::vector<std::string>& warnings, const std::string& text) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+  };
+  assert_true(has(warnings_of("8"), "'lift' has a velocity limit above 7.5 m/s"));
+  assert_false(has(warnings_of("7"), "limits nothing"));
 }
 
 struct Key {
@@ -123,12 +184,14 @@ void each_text_and_flag_sets_its_field(void**) {
   assert_true(load("dialect: sidestep").dialect == &kSidestepDialect);
   assert_true(load("dialect: iiwa").dialect == &kIiwaDialect);
   const Channels channels =
-      load("channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F}")
+      load(
+          "channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F, "
+          "other_joints: G}")
           .channels;
   assert_string_equal((channels.target + channels.obstacles + channels.arm_state + channels.arm_command +
-                       channels.controller_status + channels.loop_timing)
+                       channels.controller_status + channels.loop_timing + channels.other_joints)
                           .c_str(),
-                      "ABCDEF");
+                      "ABCDEFG");
   const Neighbours neighbours =
       load("neighbours: {publish: A, listen: [B, C], base_position_m: [1, 2, 3], base_rpy_rad: [0, 0, 1.5]}")
           .neighbours;
@@ -145,21 +208,40 @@ void the_iiwa_dialect_sets_channels_and_start_guard(void**) {
   check_near(load("").model.settings.start_guard_s, 0.0, 0);
 }
 
+void links_that_need_not_keep_clear_are_read(void**) {
+  const auto pairs = [](const std::string& robot) {
+    return load_config(
+               scratch_file("pairs.yaml", "robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool" + robot + "}\n"),
+               {})
+        .model.self_pairs.size();
+  };
+  const size_t all = pairs("");
+  assert_int_equal(pairs(", ignore_pairs: [base_link hand_link]"), all - 1);
+  const std::string srdf =
+      scratch_file("some.srdf", "<robot><disable_collisions link1='forearm_link' link2='base_link'/></robot>");
+  assert_int_equal(pairs(", srdf: " + srdf + ", ignore_pairs: [base_link hand_link]"), all - 2);
+  assert_true(one_line_with(message_of([&] { pairs(", ignore_pairs: [base_link]"); }), {"robot.ignore_pairs"}));
+  assert_true(one_line_with(message_of([&] { pairs(", srdf: no/such.srdf"); }), {"no/such.srdf"}));
+  assert_true(one_line_with(message_of([&] { pairs(", capsules_per_mesh: 3"); }), {"pieces_per_mesh"}));
+}
+
 void surroundings_are_read_with_shape_and_pose(void**) {
   const std::vector<Obstacle> list = load(
                                          "surroundings:\n"
                                          "  - {shape: sphere, radius_m: 0.3, position_m: [1, 2, 3]}\n"
                                          "  - {shape: capsule, radius_m: 0.1, length_m: 0.4, position_m: [1, 0, 0], "
                                          "quaternion: [0.5, 0.5, 0.5, 0.5]}\n"
-                                         "  - {shape: box, edges_m: [0.2, 2, 1], position_m: [0, 0, 1]}\n")
+                                         "  - {shape: box, edges_m: [0.2, 2, 1], position_m: [0, 0, 1]}\n"
+                                         "  - {shape: cylinder, radius_m: 0.3, height_m: 0.2, position_m: [0, 0, 1]}\n")
                                          .model.surroundings;
-  assert_int_equal(list.size(), 3);
+  assert_int_equal(list.size(), 4);
   check_near(list[0].capsule.centre(), Vector3(1, 2, 3), 0);
   check_near(list[0].capsule.radius_m, 0.3, 0);
   check_near(list[1].capsule.end, Vector3(1.2, 0, 0), 1e-12);
   check_near(box_of(list[2]).half_m, Vector3(1, 0.5, 0.1), 1e-12);
   check_near(box_of(list[2]).axes.col(0).eval(), Vector3(0, 1, 0), 1e-12);
-  for (int i = 0; i < 3; ++i) {
+  check_near(solid_of(list[3]).half_m, Vector3(0.3, 0.3, 0.1), 1e-12);
+  for (int i = 0; i < 4; ++i) {
     const Obstacle& obstacle = list[static_cast<size_t>(i)];
     assert_int_equal(obstacle.id, -2 - i);
     assert_true(obstacle.velocity_mps.isZero(0.0) && obstacle.angular_velocity_radps.isZero(0.0));
@@ -253,9 +335,13 @@ void the_urdf_is_searched_in_the_folders_above_the_config(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
+      cmocka_unit_test(one_limit_for_all_joints_leaves_the_prismatic_ones_as_they_are),
+      cmocka_unit_test(a_limit_that_limits_nothing_is_judged_in_the_unit_of_its_joint),
+      cmocka_unit_test(positions_of_other_joints_are_read_and_the_others_are_warned_of),
       cmocka_unit_test(each_number_sets_its_own_field_only),
       cmocka_unit_test(each_text_and_flag_sets_its_field),
       cmocka_unit_test(the_iiwa_dialect_sets_channels_and_start_guard),
+      cmocka_unit_test(links_that_need_not_keep_clear_are_read),
       cmocka_unit_test(surroundings_are_read_with_shape_and_pose),
       cmocka_unit_test(the_lwa3_file_holds_the_defaults),
       cmocka_unit_test(the_lwa3_file_holds_the_documented_parameters_of_the_paper),

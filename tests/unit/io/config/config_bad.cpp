@@ -239,7 +239,8 @@ void a_bad_robot_is_refused_with_one_line(void**) {
       {"robot: {base: base_link, tip: tool}", "robot.urdf"},
       {"robot: {urdf: urdf/lwa3.urdf, tip: tool}", "robot.base"},
       {"robot: {urdf: urdf/lwa3.urdf, base: base_link}", "robot.tip"},
-      {"robot: {urdf: urdf/none.urdf, base: base_link, tip: tool}", "urdf/none.urdf"},
+      {"robot: {urdf: urdf/none.urdf, base: base_link, tip: tool}",
+       "config.yaml: robot.urdf: there is no file 'urdf/none.urdf' in the folder of the configuration"},
       {"robot: {urdf: urdf/lwa3.urdf, base: elbow, tip: tool}", "elbow"},
       {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: hook}", "hook"},
       {"robot: {urdf: urdf/lwa3.urdf, base: base_link, tip: tool, tool: 1}", "robot.tool"},
@@ -258,8 +259,8 @@ void a_bad_robot_is_refused_with_one_line(void**) {
 
 void a_file_name_that_is_too_long_is_refused_with_one_line(void**) {
   const std::string name(5000, 'u');
-  assert_true(
-      one_line_with(error_of("robot: {urdf: " + name + ", base: base_link, tip: tool}"), {name + ": cannot be read"}));
+  const std::string robot = "robot: {urdf: " + name + ", base: base_link, tip: tool}";
+  assert_true(one_line_with(error_of(robot), {"config.yaml: robot.urdf: there is no file 'uuu"}));
 }
 
 void text_that_is_not_yaml_is_refused_with_one_line(void**) {

@@ -1,6 +1,8 @@
 #include "firmware/control/validation.h"
+#include "firmware/io/lcm/message_decoder.h"
 #include "tests/support/check.h"
 #include "tests/support/iiwa_driver.h"
+#include "tests/support/lwa3.h"
 #include "tests/support/messages.h"
 #include "tests/support/random.h"
 #include "tests/support/test_inputs.h"
@@ -104,7 +106,7 @@ void every_truncation_is_rejected(void**) {
 
 void trailing_bytes_are_rejected(void**) {
   for (const Channel& channel : channels())
-    for (const size_t extra : {1, 7, 8, 16, 133, 65536}) {
+    for (const size_t extra : {1, 7, 8, 16, 134, 65536}) {
       Bytes bytes = channel.good;
       bytes.resize(bytes.size() + extra);
       check(!accepts(channel, bytes), "%s, %zu more", channel.name, extra);
@@ -155,7 +157,7 @@ void a_message_on_the_wrong_channel_is_rejected(void**) {
 /// status behind the measured positions and velocities. The unused sizes of a sphere need only be finite, as does the
 /// third size of a capsule, which this test skips.
 void an_impossible_double_is_rejected_in_every_field(void**) {
-  const size_t capsule_at = 20, sphere_at = capsule_at + 133, numbers = 5;
+  const size_t capsule_at = 20, sphere_at = capsule_at + 134, numbers = 5;
   const auto unused = [&](const Channel& channel, size_t at, double bad) {
     if (std::string(channel.name) == "iiwa status") return at >= 20 + 8 * 2 * kJoints;
     if (std::string(channel.name) != "obstacles" || at < sphere_at) return false;
@@ -168,6 +170,7 @@ void an_impossible_double_is_rejected_in_every_field(void**) {
     for (size_t at = name == "target" ? 16 : 20; at + 8 <= channel.good.size(); at += 8) {
       if (name == "obstacles" && at == capsule_at + 77) continue;
       if (name == "target" && at == 64) ++at;                                           // tracks_orientation
+      if (name == "obstacles" && at == capsule_at + 133) ++at;                          // kind
       if (name == "obstacles" && (at == capsule_at || at == sphere_at)) at += numbers;  // id and shape
       for (const double bad : {kNan, -kNan, kInfinity, -kInfinity, 1e300, -1e300}) {
         Bytes bytes = channel.good;
@@ -205,11 +208,29 @@ void impossible_obstacles_are_rejected(void**) {
     bad.quaternion[0] = w;
     check(!accepts(channel, encoded(obstacles_message(7, {bad}))), "quaternion of length %g", w);
   }
-  for (const int shape : {-128, -1, 3, 4, 127}) {
+  for (const int shape : {-128, -1, 4, 5, 127}) {
     obstacle_t bad = capsule();
     bad.shape = static_cast<int8_t>(shape);
     check(!accepts(channel, encoded(obstacles_message(7, {bad}))), "shape %d", shape);
   }
+  for (const int kind : {-128, -1, 2, 127}) {
+    obstacle_t bad = capsule();
+    bad.kind = static_cast<int8_t>(kind);
+    check(!accepts(channel, encoded(obstacles_message(7, {bad}))), "kind %d", kind);
+  }
+  assert_true(accepted([](obstacle_t& o) { o.shape = obstacle_t::CYLINDER, o.kind = obstacle_t::PERSON; }));
+  assert_false(accepted([](obstacle_t& o) { o.shape = obstacle_t::CYLINDER, o.size[1] = -0.1; }));
+}
+
+void obstacles_of_the_layout_without_a_kind_are_rejected_with_that_reason(void**) {
+  MessageDecoder decoder(kSidestepDialect, test::lwa3());
+  Bytes bytes = encoded(obstacles_message(7, {}));
+  int64_t utime = 0;
+  assert_null(decoder.decode(Packet{bytes.data(), bytes.size()}, set, utime));
+  const Bytes fingerprint_of_0_1 = {0x71, 0xee, 0xab, 0x81, 0x30, 0x4e, 0x51, 0x3c};
+  std::copy(fingerprint_of_0_1.begin(), fingerprint_of_0_1.end(), bytes.begin());
+  const char* reason = decoder.decode(Packet{bytes.data(), bytes.size()}, set, utime);
+  check(reason && std::string(reason).find("kind") != std::string::npos, "%s", reason ? reason : "accepted");
 }
 
 void random_bytes_after_a_valid_fingerprint_never_crash(void**) {
@@ -242,6 +263,7 @@ int main() {
       cmocka_unit_test(a_message_on_the_wrong_channel_is_rejected),
       cmocka_unit_test(an_impossible_double_is_rejected_in_every_field),
       cmocka_unit_test(impossible_obstacles_are_rejected),
+      cmocka_unit_test(obstacles_of_the_layout_without_a_kind_are_rejected_with_that_reason),
       cmocka_unit_test(random_bytes_after_a_valid_fingerprint_never_crash),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

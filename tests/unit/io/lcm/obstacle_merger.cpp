@@ -70,7 +70,7 @@ void links_arrive_in_the_base_frame_of_the_receiver(void**) {
   test::Random random(2);
   const ArmState arm{1, random.joints(7, -2, 2), random.joints(7, -2, 2)};
   LinkEncoder links(lwa3(), sender.world_from_base);
-  const Packet packet = links.encode(arm, 5);
+  const Packet packet = links.encode(arm, lwa3().other_frames, 5);
   Subscriber subscriber(receiver);
   assert_false(subscriber.receive(1, Bytes(packet.bytes, packet.bytes + packet.size), 1.0));
   assert_true(subscriber.receive(0, ball_at(1, {1, 1, 1}, {0, 0, 0}), 1.0));
@@ -97,11 +97,12 @@ void all_shapes_arrive_unchanged(void**) {
   Subscriber subscriber(neighbours_at(pose({0, 0, 0}, 0), {"LINKS"}));
   test::Random random(3);
   for (int trial = 1; trial <= 100; ++trial) {
-    std::vector<obstacle_t> all(3);
-    for (int8_t shape = 0; shape < 3; ++shape) {
+    std::vector<obstacle_t> all(4);
+    for (int8_t shape = 0; shape < 4; ++shape) {
       obstacle_t& each = all[static_cast<size_t>(shape)];
       each = sphere(shape, random.inside(-1, 1), 0, random.inside(-1, 1));
       each.shape = shape;
+      each.kind = static_cast<int8_t>(trial % 2);
       const Quaternion turn = random.turn();
       const double wxyz[] = {turn.w(), turn.x(), turn.y(), turn.z()};
       std::copy(wxyz, wxyz + 4, each.quaternion);
@@ -113,13 +114,14 @@ void all_shapes_arrive_unchanged(void**) {
     assert_true(alone.receive(bytes.data(), bytes.size(), 0.01 * trial, *direct));
     subscriber.receive(1, encoded(obstacles_message(trial, {})), 0.01 * trial);
     assert_true(subscriber.receive(0, bytes, 0.01 * trial));
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < 4; ++i) {
       const Obstacle &sent = direct->obstacles[i], &received = subscriber.set->obstacles[i];
       check_near(received.capsule.start, sent.capsule.start, 1e-12);
       check_near(received.capsule.end, sent.capsule.end, 1e-12);
       check_near(received.capsule.radius_m, sent.capsule.radius_m, 1e-12);
       check_near(received.half_width_m, sent.half_width_m, 1e-12);
-      check_near(received.half_height_m, sent.half_height_m, 1e-12);
+      check_near(received.half_thickness_m, sent.half_thickness_m, 1e-12);
+      assert_true(received.shape == static_cast<Shape>(i) && received.kind == sent.kind);
     }
   }
 }
@@ -184,7 +186,7 @@ void encoding_and_merging_do_not_allocate(void**) {
   const auto round = [&](int64_t utime) {
     const Bytes ball = ball_at(utime, {1, 1, 1}, {0, 0, 0});
     const int64_t before = test::allocation_count();
-    const Packet sent = links.encode(arm, utime);
+    const Packet sent = links.encode(arm, lwa3().other_frames, utime);
     subscriber.inputs.receive_part(0, ball.data(), ball.size(), 1.0, *subscriber.set);
     assert_true(subscriber.inputs.receive_part(1, sent.bytes, sent.size, 1.0, *subscriber.set));
     return test::allocation_count() - before;

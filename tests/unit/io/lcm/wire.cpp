@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <iterator>
+#include <vector>
 
+#include "firmware/base/realtime.h"
 #include "tests/support/check.h"
 #include "tests/support/datagram_sender.h"
 #include "tests/support/datagrams.h"
@@ -23,6 +25,7 @@ struct NotingWire {
   Wire wire{private_lcm_url(), {kChannels, kNeighbours, kSidestepDialect, test::lwa3()}};
   std::string order;  ///< a letter for each message
   Bytes last;
+  std::vector<double> received_s;
 
   NotingWire() {
     wire.on_arm_state(note('a'));
@@ -35,6 +38,7 @@ struct NotingWire {
     return [this, letter](Packet packet) {
       order += letter;
       last.assign(packet.bytes, packet.bytes + packet.size);
+      received_s.push_back(wire.received_s());
     };
   }
   /// Receives until nothing has arrived for 200 ms.
@@ -74,6 +78,24 @@ void messages_arrive_whole_and_in_order(void**) {
   }
   assert_string_equal(noting.order.c_str(), "atlo");
   assert_true(noting.last == full_set);
+}
+
+/// A process that was stopped reads all that has waited in one moment.
+void a_message_has_the_time_when_it_reached_the_machine(void**) {
+  NotingWire noting;
+  test::LcmPeer peer;
+  double sent_s[3];
+  for (double& s : sent_s) {
+    s = monotonic_s();
+    peer.send_bytes("TARGET", Bytes(50, 3));
+    sleep_until(s + 0.2);
+  }
+  noting.drain();
+  assert_int_equal(noting.received_s.size(), 3);
+  for (size_t i = 0; i < 3; ++i) {
+    const double late_s = noting.received_s[i] - sent_s[i];
+    check(late_s > -0.001 && late_s < 0.1, "message %zu: %.4f s after it was sent", i, late_s);
+  }
 }
 
 void a_message_that_is_too_large_is_handed_over_for_rejection(void**) {
@@ -136,6 +158,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_wire_starts_no_thread),
       cmocka_unit_test(messages_arrive_whole_and_in_order),
+      cmocka_unit_test(a_message_has_the_time_when_it_reached_the_machine),
       cmocka_unit_test(a_message_that_is_too_large_is_handed_over_for_rejection),
       cmocka_unit_test(own_commands_are_not_foreign),
       cmocka_unit_test(what_is_malformed_or_incomplete_is_counted),

@@ -1,6 +1,7 @@
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/joint_state_t.hpp>
+#include <sidestep/named_joints_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 #include <vector>
@@ -66,7 +67,8 @@ Fingerprint obstacle() {
       .add("quaternion", "double", {"4"})
       .add("size", "double", {"3"})
       .add("velocity", "double", {"3"})
-      .add("angular_velocity", "double", {"3"});
+      .add("angular_velocity", "double", {"3"})
+      .add("kind", "int8_t");
 }
 
 Fingerprint obstacles() {
@@ -83,6 +85,14 @@ Fingerprint joint_state() {
       .add("num_joints", "int32_t")
       .add("joint_position", "double", {"num_joints"})
       .add("joint_velocity", "double", {"num_joints"});
+}
+
+Fingerprint named_joints() {
+  return Fingerprint()
+      .add("utime", "int64_t")
+      .add("num_joints", "int32_t")
+      .add("joint_name", "string", {"num_joints"})
+      .add("joint_position", "double", {"num_joints"});
 }
 
 Fingerprint joint_command() {
@@ -108,10 +118,12 @@ Fingerprint controller_status() {
   f.add("cycle_time", "double").add("wake_latency", "double");
   f.add("skipped_cycles", "int64_t").add("rejected_messages", "int64_t").add("message", "string");
   f.add("foresight", "int8_t").add("guide_horizon", "double").add("guide_tool", "double", {"8", "3"});
+  f.add("self_clearance", "double").add("self_links", "string", {"2"});
   return f;
 }
 
-/// The literals are the fingerprints of the first release. A changed layout breaks every peer that is not rebuilt.
+/// The literals are the fingerprints of the last release that changed the layout. A changed layout breaks every peer
+/// that is not rebuilt.
 void layouts_have_the_published_fingerprints(void**) {
   const struct {
     const char* type;
@@ -120,12 +132,13 @@ void layouts_have_the_published_fingerprints(void**) {
     uint64_t published;
   } types[] = {
       {"target_t", sidestep::target_t::getHash(), target().value(), 0x635ec8698d1164cd},
-      {"obstacle_t", sidestep::obstacle_t::getHash(), obstacle().value(), 0xf1715a54f3799d54},
-      {"obstacles_t", sidestep::obstacles_t::getHash(), obstacles().value(), 0x71eeab81304e513c},
+      {"obstacle_t", sidestep::obstacle_t::getHash(), obstacle().value(), 0x0067ceede37a7f5f},
+      {"obstacles_t", sidestep::obstacles_t::getHash(), obstacles().value(), 0x8fdb94b310501552},
       {"joint_state_t", sidestep::joint_state_t::getHash(), joint_state().value(), 0x1806be37545e7d3f},
+      {"named_joints_t", sidestep::named_joints_t::getHash(), named_joints().value(), 0xb369b291b5836948},
       {"joint_command_t", sidestep::joint_command_t::getHash(), joint_command().value(), 0xbc0ffe2927412bea},
       {"controller_status_t", sidestep::controller_status_t::getHash(), controller_status().value(),
-       0xea1599a1f65736c3},
+       0xaba3e2c3546e3a7d},
   };
   for (const auto& type : types) {
     const auto generated = static_cast<uint64_t>(type.generated);
@@ -155,9 +168,13 @@ void constants_on_the_wire_equal_those_of_the_firmware(void**) {
   assert_int_equal(Status::LIMITING_NOT_REALTIME, sidestep::kLimitingNotRealtime);
   assert_int_equal(Status::LIMITING_LATE, sidestep::kLimitingLate);
   assert_int_equal(Status::LIMITING_SHIELD_FAILED, sidestep::kLimitingShieldFailed);
+  assert_int_equal(Status::LIMITING_SELF, sidestep::kLimitingSelf);
   assert_int_equal(sidestep::obstacle_t::SPHERE, 0);
   assert_int_equal(sidestep::obstacle_t::CAPSULE, 1);
   assert_int_equal(sidestep::obstacle_t::BOX, 2);
+  assert_int_equal(sidestep::obstacle_t::CYLINDER, 3);
+  assert_int_equal(sidestep::obstacle_t::THING, 0);
+  assert_int_equal(sidestep::obstacle_t::PERSON, 1);
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ void a_bad_urdf_is_refused_with_one_line_that_names_file_and_culprit(void**) {
     const char* to;
     const char* culprit;
   } cases[] = {
-      {"prismatic", R"(name="joint_3" type="revolute")", R"(name="joint_3" type="prismatic")", "joint_3"},
+      {"xacro", "</robot>", "<xacro:macro name='hand'/></robot>", "is a xacro file"},
+      {"planar", R"(name="joint_3" type="revolute")", R"(name="joint_3" type="planar")", "joint_3"},
       {"floating", R"(name="joint_3" type="revolute")", R"(name="joint_3" type="floating")", "joint_3"},
       {"no_type", R"(name="joint_3" type="revolute")", R"(name="joint_3" type="hinge")", ""},
       {"no_limit", kJoint4, "", ""},
@@ -120,7 +121,9 @@ void at_most_64_shapes_count_after_those_inside_others_are_removed(void**) {
                         replaced(tower(6), "<link name='l6'/>", "<link name='l6'>" + shapes + "</link>"));
   };
   assert_string_equal(error_of(with_spheres(kMaxShapes - 1, 0.3), "l0", "l6").c_str(), "");
-  check(one_line_with(error_of(with_spheres(kMaxShapes, 0.3), "l0", "l6"), {"spheres.urdf", "65"}), "one too many");
+  check(one_line_with(error_of(with_spheres(kMaxShapes, 0.3), "l0", "l6"),
+                      {"spheres.urdf", std::to_string(kMaxShapes + 1)}),
+        "one too many");
   // 200 equal spheres are reduced to one.
   assert_int_equal(load_arm(with_spheres(200, 0.0), "l0", "l6").shapes.size(), 2);
 }
@@ -171,10 +174,26 @@ void a_truncated_urdf_never_crashes(void**) {
   assert_int_equal(loaded, 0);
 }
 
+void limits_in_degrees_are_warned_of(void**) {
+  const std::string degrees =
+      replaced(lwa3(), kJoint4, R"(<limit lower="-113" upper="113" velocity="2.0" effort="176"/>)");
+  const Arm arm = load_arm(scratch_file("degrees.urdf", degrees), "base_link", "tool");
+  assert_int_equal(arm.warnings.size(), 1);
+  check(one_line_with(arm.warnings[0], {"'joint_4'", "degrees"}), "%s", arm.warnings[0].c_str());
+  assert_true(load_arm("urdf/lwa3.urdf", "base_link", "tool").warnings.empty());
+}
+
+void a_urdf_that_only_mentions_xacro_in_a_comment_is_read(void**) {
+  const std::string text = replaced(lwa3(), "</robot>", "<!-- made from <xacro:macro> --></robot>");
+  assert_string_equal(error_of(scratch_file("from_xacro.urdf", text)).c_str(), "");
+}
+
 }  // namespace
 
 int main() {
   const CMUnitTest tests[] = {
+      cmocka_unit_test(limits_in_degrees_are_warned_of),
+      cmocka_unit_test(a_urdf_that_only_mentions_xacro_in_a_comment_is_read),
       cmocka_unit_test(a_bad_urdf_is_refused_with_one_line_that_names_file_and_culprit),
       cmocka_unit_test(a_wrong_chain_is_refused_with_one_line),
       cmocka_unit_test(a_chain_has_6_to_10_joints),

@@ -1,12 +1,14 @@
-#include "firmware/model/load/self_pairs.h"
+#include "firmware/model/load/srdf.h"
 
 #include <algorithm>
 
 #include "firmware/control/shield/shield.h"
+#include "firmware/model/gjk.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep;
 using test::lwa3;
@@ -16,17 +18,17 @@ namespace {
 
 constexpr double kPeriod_s = 0.01;
 
-using Pairs = std::vector<std::pair<int, int>>;
+using Pairs = std::vector<SelfPair>;
 
 std::vector<std::string> names(const Arm& arm, const Pairs& pairs) {
   std::vector<std::string> found;
-  for (const auto& [a, b] : pairs)
+  for (const auto& [a, b, clearance_m] : pairs)
     found.push_back(arm.shapes[static_cast<size_t>(a)].link + " " + arm.shapes[static_cast<size_t>(b)].link);
   std::sort(found.begin(), found.end());
   return found;
 }
 
-Proximity measure(const Arm& arm, const LinkPoses& poses, const std::pair<int, int>& pair) {
+Proximity measure(const Arm& arm, const LinkPoses& poses, const SelfPair& pair) {
   return measure_pair(transformed(poses, arm.shapes[static_cast<size_t>(pair.first)]),
                       transformed(poses, arm.shapes[static_cast<size_t>(pair.second)]));
 }
@@ -34,7 +36,7 @@ Proximity measure(const Arm& arm, const LinkPoses& poses, const std::pair<int, i
 void the_lwa3_has_three_pairs_that_can_meet(void**) {
   const std::vector<std::string> expected = {"base_link forearm_link", "base_link hand_link",
                                              "upper_arm_link hand_link"};
-  const std::vector<std::string> found = names(lwa3(), find_self_pairs(lwa3()));
+  const std::vector<std::string> found = names(lwa3(), find_self_pairs(lwa3(), 0.02).kept);
   std::string text;
   for (const std::string& name : found) text += name + "; ";
   check(found == expected, "found %s", text.c_str());
@@ -46,21 +48,75 @@ void the_pairs_are_the_same_on_every_call(void**) {
                                  {"tests/data/arm10.urdf", "l0", "l10"}};
   for (const auto& [file, base, tip] : arms) {
     const Arm arm = load_arm(file, base, tip);
-    const Pairs pairs = find_self_pairs(arm);
-    assert_true(pairs == find_self_pairs(arm));
-    for (const auto& [a, b] : pairs) {
+    const Pairs pairs = find_self_pairs(arm, 0.02).kept, again = find_self_pairs(arm, 0.02).kept;
+    const auto same = [](const SelfPair& x, const SelfPair& y) {
+      return x.first == y.first && x.second == y.second && x.clearance_m == y.clearance_m;
+    };
+    assert_true(std::equal(pairs.begin(), pairs.end(), again.begin(), again.end(), same));
+    for (const auto& [a, b, clearance_m] : pairs) {
       check(a < b && b < static_cast<int>(arm.shapes.size()), "%s: %d and %d", file, a, b);
       assert_int_not_equal(arm.shapes[static_cast<size_t>(a)].body, arm.shapes[static_cast<size_t>(b)].body);
     }
   }
 }
 
-/// A clearance that no configuration has would be demanded in vain in every cycle.
-void pairs_that_never_reach_the_clearance_are_overlaps(void**) {
-  const size_t all = find_self_pairs(lwa3()).size() + find_overlaps(lwa3()).size();
-  check(find_self_pairs(lwa3(), 0.02).size() == 3, "%zu at 2 cm", find_self_pairs(lwa3(), 0.02).size());
-  check(find_self_pairs(lwa3(), 2.0).empty(), "%zu at 2 m", find_self_pairs(lwa3(), 2.0).size());
-  check(find_overlaps(lwa3(), 2.0).size() == all, "%zu at 2 m", find_overlaps(lwa3(), 2.0).size());
+/// The share of configurations without contact, other ones than were sampled, that the pairs forbid.
+double forbidden_share(const Arm& arm, const SelfPairs& pairs) {
+  Random random(7);
+  int free = 0, forbidden = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const LinkPoses poses = forward_kinematics(arm, random.configuration(arm));
+    double least_m = 1.0, least_room_m = 1.0;
+    for (const SelfPair& pair : pairs.kept) {
+      const ConvexSolid a = solid_of(poses, arm.shapes[static_cast<size_t>(pair.first)]);
+      const ConvexSolid b = solid_of(poses, arm.shapes[static_cast<size_t>(pair.second)]);
+      const double distance_m = gap_between(a, b, a.centre - b.centre).distance_m;
+      least_m = std::min(least_m, distance_m);
+      least_room_m = std::min(least_room_m, distance_m - pair.clearance_m);
+    }
+    if (least_m <= 0.0) continue;
+    ++free;
+    if (least_room_m < 0.0) ++forbidden;
+  }
+  return forbidden / static_cast<double>(free);
+}
+
+void few_free_configurations_are_forbidden_also_where_links_are_near_by_construction(void**) {
+  const Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
+  for (const double clearance_m : {0.02, 0.2}) {
+    const SelfPairs pairs = find_self_pairs(arm, clearance_m);
+    for (const SelfPair& pair : pairs.kept)
+      check(pair.clearance_m >= 0.0 && pair.clearance_m <= clearance_m, "%g", pair.clearance_m);
+    check(forbidden_share(arm, pairs) < 0.03, "%g m: %g", clearance_m, forbidden_share(arm, pairs));
+  }
+}
+
+void the_pair_that_forbids_most_is_named(void**) {
+  const SelfPairs pairs = find_self_pairs(load_arm("tests/data/arm8.urdf", "mount", "flange"), 0.2);
+  assert_true(pairs.forbidden_share > 0.0 && pairs.worst_share > 0.0 && pairs.worst_share <= pairs.forbidden_share);
+  assert_true(pairs.worst >= 0 && pairs.worst < static_cast<int>(pairs.kept.size()));
+}
+
+void the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one(void**) {
+  for (const SelfPair& pair : find_self_pairs(lwa3(), 0.02).kept) check_near(pair.clearance_m, 0.02, 0.0);
+}
+
+void ignored_links_form_no_pair(void**) {
+  const Pairs pairs = find_self_pairs(lwa3(), 0.02, {{"hand_link", "base_link"}, {"no_link", "base_link"}}).kept;
+  const std::vector<std::string> expected = {"base_link forearm_link", "upper_arm_link hand_link"};
+  assert_true(names(lwa3(), pairs) == expected);
+}
+
+void an_srdf_disables_collisions(void**) {
+  const std::string file = test::scratch_file("arm.srdf", R"(<?xml version="1.0"?><robot name="x">
+    <!-- <disable_collisions link1="c" link2="d"/> -->
+    <disable_collisions link1="a" link2="b" reason="Adjacent"/><disable_collisions
+      link2='e' link1='f'/></robot>)");
+  assert_true(disabled_collisions(file) == std::vector<LinkPair>({{"a", "b"}, {"f", "e"}}));
+  assert_string_equal(srdf_beside(test::scratch_folder() + "/arm.urdf").c_str(), file.c_str());
+  assert_string_equal(srdf_beside(test::scratch_folder() + "/other.urdf").c_str(), "");
+  const std::string bad = test::scratch_file("bad.srdf", "<robot><disable_collisions link1='a'/></robot>");
+  assert_true(test::one_line_with(test::message_of([&] { disabled_collisions(bad); }), {bad, "link2"}));
 }
 
 /// The nominal velocity that closes the nearest pair as fast as the joints can move.
@@ -117,7 +173,11 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_lwa3_has_three_pairs_that_can_meet),
       cmocka_unit_test(the_pairs_are_the_same_on_every_call),
-      cmocka_unit_test(pairs_that_never_reach_the_clearance_are_overlaps),
+      cmocka_unit_test(few_free_configurations_are_forbidden_also_where_links_are_near_by_construction),
+      cmocka_unit_test(the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one),
+      cmocka_unit_test(the_pair_that_forbids_most_is_named),
+      cmocka_unit_test(ignored_links_form_no_pair),
+      cmocka_unit_test(an_srdf_disables_collisions),
       cmocka_unit_test(a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

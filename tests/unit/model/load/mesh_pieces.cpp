@@ -2,8 +2,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "firmware/model/load/fit_cache.h"
-#include "firmware/model/nearest_points.h"
+#include "firmware/model/gjk.h"
+#include "firmware/model/load/capsule_fit.h"
+#include "firmware/model/load/pieces_cache.h"
 #include "host/sim/solid.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
@@ -37,30 +38,54 @@ std::string block(const std::string& name, const Vector3& edges_m) {
   return scratch_file(name, text + "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n");
 }
 
-double outside_m(const CapsuleFit& fit, const Vector3& p) {
+/// How far a point is outside of all pieces, m.
+double outside_m(const MeshPieces& split, const Vector3& p) {
   double least_m = 1e9;
-  for (const Capsule& c : fit.capsules)
-    least_m = std::min(least_m, (p - nearest_on_segment(c.start, c.end, p)).norm() - c.radius_m);
+  for (const MeshPiece& piece : split.pieces) {
+    ConvexSolid solid;
+    solid.kind = CoreKind::kPolyhedron;
+    solid.polyhedron = piece.polyhedron.get();
+    solid.radius_m = piece.radius_m;
+    least_m = std::min(least_m, gap_between(solid, ConvexSolid::of(Capsule{p, p, 0.0}), -p).distance_m);
+  }
   return least_m;
 }
 
 void every_point_of_every_triangle_is_enclosed(void**) {
   Random random(1);
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 5; ++trial) {
     const Vector3 edges_m = random.inside(0.01, 0.6);
-    const Mesh mesh = random_mesh(random, edges_m, 30);
+    const Mesh mesh = random_mesh(random, edges_m, trial == 0 ? 1 : 40);
     for (int most : {1, 3}) {
-      const CapsuleFit fit = fit_capsules(mesh, most);
+      const MeshPieces split = split_mesh(mesh, most);
+      check(split.pieces.size() <= static_cast<size_t>(most), "%zu pieces", split.pieces.size());
       for (const auto& [a, b, c] : mesh.triangles)
-        for (int i = 0; i <= 10; ++i)
-          for (int j = 0; j <= 10 - i; ++j) {
+        for (int i = 0; i <= 6; ++i)
+          for (int j = 0; j <= 6 - i; ++j) {
             const Vector3 p = (i * mesh.vertices[static_cast<size_t>(a)] + j * mesh.vertices[static_cast<size_t>(b)] +
-                               (10 - i - j) * mesh.vertices[static_cast<size_t>(c)]) /
-                              10.0;
-            check(outside_m(fit, p) <= 0.0, "trial %d: %g m outside", trial, outside_m(fit, p));
+                               (6 - i - j) * mesh.vertices[static_cast<size_t>(c)]) /
+                              6.0;
+            check(outside_m(split, p) <= 1e-9, "trial %d: %g m outside", trial, outside_m(split, p));
           }
     }
   }
+}
+
+/// More vertices than a polyhedron keeps: the rounding radius covers what is left out.
+void a_fine_ball_is_enclosed_by_few_vertices_and_a_small_radius(void**) {
+  Random random(4);
+  Mesh mesh;
+  for (int i = 0; i < 1500; ++i) mesh.vertices.push_back(0.1 * random.direction());
+  const ConvexHull hull = convex_hull(mesh.vertices);
+  mesh.vertices = hull.vertices;
+  for (const ConvexHull::Face& face : hull.faces) mesh.triangles.push_back(face.corners);
+  const MeshPieces split = split_mesh(mesh, 1);
+  const MeshPiece& piece = split.pieces.front();
+  check(piece.polyhedron->vertices.size() <= static_cast<size_t>(kMostVertices), "%zu",
+        piece.polyhedron->vertices.size());
+  check(piece.radius_m > 1e-4 && piece.radius_m < 6e-3, "radius %g", piece.radius_m);
+  check(split.excess_m < 6e-3, "excess %g", split.excess_m);
+  for (const Vector3& p : mesh.vertices) check(outside_m(split, p) <= 1e-9, "%g m outside", outside_m(split, p));
 }
 
 void points_on_a_capsule_give_that_capsule(void**) {
@@ -77,15 +102,16 @@ void points_on_a_capsule_give_that_capsule(void**) {
   check((found.end - found.start).normalized().cross(axis).norm() < 0.01, "tilted");
 }
 
-void cutting_a_bent_mesh_reduces_its_slack(void**) {
+void a_bent_mesh_is_cut_where_it_bends(void**) {
   Mesh bent = load_mesh(block("one.obj", {0.6, 0.1, 0.1}), {1, 1, 1});
   const Mesh other = load_mesh(block("two.obj", {0.1, 0.1, 0.3}), {1, 1, 1});
   const int first = static_cast<int>(bent.vertices.size());
   bent.vertices.insert(bent.vertices.end(), other.vertices.begin(), other.vertices.end());
   for (const auto& [a, b, c] : other.triangles) bent.triangles.push_back({a + first, b + first, c + first});
-  const CapsuleFit one = fit_capsules(bent, 1), three = fit_capsules(bent, 3);
-  assert_int_equal(one.capsules.size(), 1);
-  check(three.capsules.size() > 1 && three.slack_m < 0.75 * one.slack_m, "%g, was %g", three.slack_m, one.slack_m);
+  const MeshPieces one = split_mesh(bent, 1), more = split_mesh(bent, 8);
+  assert_int_equal(one.pieces.size(), 1);
+  check(one.excess_m > 0.05, "%g", one.excess_m);
+  check(more.pieces.size() <= 3 && more.excess_m < 0.01, "%zu pieces, excess %g", more.pieces.size(), more.excess_m);
 }
 
 void meshes_are_read_and_scaled(void**) {
@@ -160,7 +186,7 @@ void a_damaged_cache_entry_is_computed_and_written_again(void**) {
   namespace fs = std::filesystem;
   setenv("XDG_CACHE_HOME", (scratch_folder() + "/cache").c_str(), 1);
   const Mesh mesh = load_mesh(block("cached.obj", {0.5, 0.1, 0.2}), {1, 1, 1});
-  const CapsuleFit fresh = fit_capsules_cached(mesh, 3);
+  const MeshPieces fresh = split_mesh_cached(mesh, 3);
   const fs::path file = fs::directory_iterator(scratch_folder() + "/cache/sidestep")->path();
   const std::string text = test::text_of(file.string());
   std::string altered = text;
@@ -168,11 +194,11 @@ void a_damaged_cache_entry_is_computed_and_written_again(void**) {
   for (const std::string& broken :
        {std::string(), std::string("nonsense\n"), text.substr(0, text.size() / 2), altered}) {
     std::ofstream(file) << broken;
-    check_near(fit_capsules_cached(mesh, 3).capsules.front().radius_m, fresh.capsules.front().radius_m, 0.0);
+    check_near(split_mesh_cached(mesh, 3).pieces.front().radius_m, fresh.pieces.front().radius_m, 0.0);
     check(test::text_of(file.string()) == text, "not written again after '%s'", broken.c_str());
   }
   setenv("XDG_CACHE_HOME", "/proc/nowhere", 1);
-  check_near(fit_capsules_cached(mesh, 3).slack_m, fresh.slack_m, 0.0);
+  check_near(split_mesh_cached(mesh, 3).excess_m, fresh.excess_m, 0.0);
 }
 
 void the_simulator_measures_distances_to_the_mesh_itself(void**) {
@@ -199,8 +225,9 @@ void the_simulator_measures_distances_to_the_mesh_itself(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_point_of_every_triangle_is_enclosed),
+      cmocka_unit_test(a_fine_ball_is_enclosed_by_few_vertices_and_a_small_radius),
       cmocka_unit_test(points_on_a_capsule_give_that_capsule),
-      cmocka_unit_test(cutting_a_bent_mesh_reduces_its_slack),
+      cmocka_unit_test(a_bent_mesh_is_cut_where_it_bends),
       cmocka_unit_test(meshes_are_read_and_scaled),
       cmocka_unit_test(a_package_is_searched_on_the_path_and_above_the_urdf),
       cmocka_unit_test(a_bad_mesh_is_refused_with_one_line),
