@@ -13,16 +13,16 @@ namespace sidestep {
 namespace {
 
 /// The joint velocity that the law computes; zero unless tracking. In HOLD only a retreat is followed, because other
-/// guides end at a target.
+/// guides end at a target. guide_s: guide_time_s().
 NominalCommand evaluate_law(const Model& model, const LawInput& input, const State& state, const Guide* guide,
-                            double now_s) {
+                            double guide_s) {
   const Settings& settings = model.settings;
   const bool retreats = guide && guide->foresight_status == ForesightStatus::kWaiting;
-  if (state.supervision.mode == Mode::kHold && retreats) return guided_law(settings.sidestep, input, *guide, now_s);
+  if (state.supervision.mode == Mode::kHold && retreats) return guided_law(settings.sidestep, input, *guide, guide_s);
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
-  if (guide) return guided_law(settings.sidestep, input, *guide, now_s);
+  if (guide) return guided_law(settings.sidestep, input, *guide, guide_s);
   return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, model.arm, input.position_rad));
 }
 
@@ -72,10 +72,10 @@ void report_nominal(const NominalCommand& nominal, const JointVector& safe_radps
   if (nominal.task_speed_limited) report.limiting |= kLimitingTaskSpeed;
 }
 
-void report_guide(Mode mode, const Guide* guide, double now_s, Report& report) {
+void report_guide(Mode mode, const Guide* guide, double guide_s, Report& report) {
   if (!guide || !moves(mode)) return;
   report.foresight_status = guide->foresight_status;
-  report.guide_horizon_s = std::max(0.0, guide->end_s() - now_s);
+  report.guide_horizon_s = std::max(0.0, guide->end_s() - guide_s);
   if (guide->knots > 0) report.guide = guide;
 }
 
@@ -130,7 +130,10 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;
-  const NominalCommand nominal = evaluate_law(model, input, next, guide, now_s);
+  const double guide_s =
+      guide ? guide_time_s(model.arm, *guide, arm.position_rad, now_s, model.settings.period_s(), next.guide_progress)
+            : now_s;
+  const NominalCommand nominal = evaluate_law(model, input, next, guide, guide_s);
   probe.passed(Stage::kLaw);
 
   const Mode& mode = next.supervision.mode;  // latch_not_finite() may still change it
@@ -150,7 +153,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   probe.passed(Stage::kGate);
 
   report_nominal(nominal, safe_radps, result.report);
-  report_guide(mode, inputs.guide, now_s, result.report);
+  report_guide(mode, inputs.guide, guide_s, result.report);
   report_scene(input, inputs.target.message != nullptr, result.report);
 }
 

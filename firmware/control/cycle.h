@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "firmware/control/command_stream.h"
+#include "firmware/control/guided_law.h"
 #include "firmware/control/input_monitor.h"
 #include "firmware/control/shield/shield.h"
 #include "firmware/control/stages.h"
@@ -25,6 +26,7 @@ struct State {
   CommandStream stream;       ///< command_stream.h
   JointVector evasion_radps;  ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
   PlannedVelocity planned;
+  GuideProgress guide_progress;  ///< guided_law.h
 };
 
 /// The report of one cycle, published as controller_status_t.

@@ -1,13 +1,33 @@
 #include "firmware/control/guided_law.h"
 
+#include <algorithm>
+
 #include "firmware/control/sidestep_law.h"
 
 namespace sidestep {
 
-NominalCommand guided_law(const SidestepGains& gains, const LawInput& input, const Guide& guide, double now_s) {
-  const GuidePoint point = point_of(guide, now_s);
+namespace {
+
+constexpr double kFollows_rad = 0.05;
+constexpr double kLeft_rad = 0.2;
+constexpr double kLeastRate = 0.1;
+
+}  // namespace
+
+double guide_time_s(const Arm& arm, const Guide& guide, const JointVector& position_rad, double now_s, double period_s,
+                    GuideProgress& progress) {
+  if (progress.start_s != guide.time_s[0]) progress = {guide.time_s[0], 0.0};
+  const JointVector deviation_rad = point_of(guide, now_s - progress.delay_s).position_rad - position_rad;
+  const double largest_rad = deviation_rad.cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff();
+  const double rate = std::clamp((kLeft_rad - largest_rad) / (kLeft_rad - kFollows_rad), kLeastRate, 1.0);
+  progress.delay_s += (1.0 - rate) * period_s;
+  return now_s - progress.delay_s;
+}
+
+NominalCommand guided_law(const SidestepGains& gains, const LawInput& input, const Guide& guide, double time_s) {
+  const GuidePoint point = point_of(guide, time_s);
   const JointVector feedback_radps = gains.k_guide_per_s * (point.position_rad - input.position_rad);
-  if (now_s >= guide.end_s() && guide.foresight_status != ForesightStatus::kWaiting) {
+  if (time_s >= guide.end_s() && guide.foresight_status != ForesightStatus::kWaiting) {
     const JointVector fastest = gains.guide_posture_share * input.arm.limits.velocity_radps;
     return sidestep_law(gains, input, feedback_radps.cwiseMax(-fastest).cwiseMin(fastest));
   }

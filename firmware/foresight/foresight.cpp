@@ -24,6 +24,7 @@ void Foresight::reset(bool tracking) {
   adopt(Guide{}, Forecast{});
   candidate_ = Guide{};
   planner_.reset();
+  tree_planner_.reset();
   calls_ = 0;
   searches_left_ = 0;
 }
@@ -73,6 +74,7 @@ void Foresight::search(const Snapshot& now) {
     return;
   }
   candidate_ = now.tracking ? planner_.plan_to_target(now) : Guide{};
+  if (candidate_.knots == 0 && now.tracking) candidate_ = tree_planner_.plan(now);
   if (candidate_.knots > 0) return;
   if (expected_.collides) candidate_ = planner_.plan_retreat(now);
   if (++unsuccessful_searches_ > kSearchesUntilWaiting && guide_.knots == 0 && !expected_.arrives)

@@ -3,6 +3,7 @@
 #include "firmware/foresight/expectation.h"
 #include "firmware/foresight/planner.h"
 #include "firmware/foresight/rollout.h"
+#include "firmware/foresight/tree_planner.h"
 
 namespace sidestep {
 
@@ -11,7 +12,8 @@ namespace sidestep {
 /// Large: lives on the heap.
 class Foresight {
  public:
-  explicit Foresight(const Model& model) : model_(model), rollout_(model), planner_(model), expectation_(model.arm) {}
+  explicit Foresight(const Model& model)
+      : model_(model), rollout_(model), planner_(model), tree_planner_(model), expectation_(model.arm) {}
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
   /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
@@ -48,6 +50,7 @@ class Foresight {
   const Model& model_;
   Rollout rollout_;
   Planner planner_;
+  TreePlanner tree_planner_;
   bool tracking_ = false;  ///< of the last snapshot
   int64_t calls_ = 0;
   int searches_left_ = 0;  ///< after a forecast that was not good

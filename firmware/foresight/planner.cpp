@@ -65,9 +65,7 @@ JointVector Planner::random_configuration(const JointVector& around_rad, double 
 Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   Guide guide;
   guide.foresight_status = status;
-  guide.knots = 1;
-  guide.time_s[0] = from.now_s;
-  guide.position_rad[0] = from.arm.position_rad;
+  guide.add(from.now_s, from.arm.position_rad);
   return guide;
 }
 
@@ -78,8 +76,7 @@ void Planner::append(Guide& guide, const JointVector& q_rad) const {
   const JointVector distance_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();
   const double by_velocity_s = 1.5 * distance_rad.cwiseQuotient(limits.velocity_radps).maxCoeff();
   const double by_acceleration_s = std::sqrt(6.0 * distance_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff());
-  guide.time_s[guide.knots] = guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kLimitShare;
-  guide.position_rad[guide.knots++] = q_rad;
+  guide.add(guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kLimitShare, q_rad);
 }
 
 /// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).

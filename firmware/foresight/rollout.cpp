@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/control/extrapolation.h"
+#include "firmware/control/shield/required_clearance.h"
 #include "firmware/model/clearance.h"
 #include "firmware/model/prediction.h"
 
@@ -52,7 +53,10 @@ bool is_at(const LinkPoses& poses, const Target& target) {
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
   coarse_.settings.bridges_outliers = false;  // a lag beyond reach between measured and commanded arm is a jump
-  coarse_.settings.obstacle_trust = {};       // a snapshot's obstacles are grown already and contain the static ones
+  // A snapshot's obstacles are grown already and contain the static ones.
+  ShieldSettings& shield = coarse_.settings.shield;
+  if (!is_exact(coarse_.settings.obstacle_trust)) shield.rest_clearance_m = shield.hard_clearance_m;
+  coarse_.settings.obstacle_trust = {};
   coarse_.surroundings.clear();
 }
 
@@ -88,7 +92,13 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   // step() uses only differences of utime.
   arm.utime = state.arm_monitor.accepted.state.utime = state.arm_monitor.before.state.utime = 0;
   Forecast forecast;
-  const double enough_m = (from.tracking ? kCollisionShare : kSqueezedShare) * coarse_.settings.shield.hard_clearance_m;
+  const ShieldSettings& shield = coarse_.settings.shield;
+  const double share = from.tracking ? kCollisionShare : kSqueezedShare, enough_m = share * shield.hard_clearance_m;
+  std::array<double, kMaxNearbyObstacles> allowance_m;
+  for (int i = 0; i < from.nearby.count; ++i)
+    allowance_m[i] =
+        share * (shield.hard_clearance_m -
+                 required_clearance_m(shield.hard_clearance_m, shield.rest_clearance_m, from.nearby.obstacles[i]));
   forecast.period_s = period_s;
   double least_m = std::numeric_limits<double>::infinity();
   for (int cycle = 1; cycle <= cycles; ++cycle) {
@@ -110,7 +120,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     forecast.arrives = !from.tracking || is_at(poses, target);
     if (!forecast.arrives) forecast.cost_s += period_s;
     least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
-                                                period_s, enough_m));
+                                                period_s, enough_m, allowance_m.data()));
     if (after_s <= kForecastPath_s && !forecast.path_rad.is_full()) forecast.path_rad.add(arm.position_rad);
     if (stays_at_rest(from, guide, poses, arm, after_s, forecast.arrives)) {
       if (!forecast.arrives) forecast.cost_s += (cycles - cycle) * period_s;

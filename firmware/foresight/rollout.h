@@ -14,7 +14,7 @@ constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a c
 /// The result of a rollout.
 struct Forecast {
   bool arrives = false;   ///< the tool is at the target at the end; always true in HOLD
-  bool collides = false;  ///< the clearance falls below half the hard clearance (in HOLD below 1.5 times)
+  bool collides = false;  ///< the clearance falls below half of what is needed (in HOLD below 1.5 times)
   double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides
 
   double period_s = 0.0;                              ///< between two points of the path

@@ -22,6 +22,9 @@ enum class Shape : int8_t { kSphere = 0, kCapsule = 1, kBox = 2, kCylinder = 3 }
 /// Values as in obstacle_t.
 enum class Kind : int8_t { kThing = 0, kPerson = 1 };
 
+/// Ids at or below this one belong to the links of other arms.
+constexpr int32_t kNeighbourIds = -10000;
+
 /// An obstacle with its velocity at one instant, in the base frame: a core, grown by inflation_m(). The core is a point
 /// (sphere), the segment capsule.start - capsule.end (capsule), box_of() (box) or the cylinder about that segment with
 /// the radius half_thickness_m.

@@ -68,15 +68,18 @@ double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double le
 }  // namespace
 
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
-                       double enough_m) {
+                       double enough_m, const double* allowance_m) {
   const Links links = moving_links(arm, poses);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];
     const Capsule& capsule = obstacle.capsule;
-    least_m = capsule.is_sphere() ? nearest_to_sphere_m(links, capsule.start + obstacle.velocity_mps * after_s,
-                                                        capsule.radius_m, least_m)
-                                  : nearest_to_long_m(links, extrapolated(obstacle, after_s), least_m);
+    const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
+    const double found_m =
+        capsule.is_sphere()
+            ? nearest_to_sphere_m(links, capsule.start + obstacle.velocity_mps * after_s, capsule.radius_m, below_m)
+            : nearest_to_long_m(links, extrapolated(obstacle, after_s), below_m);
+    if (found_m < below_m) least_m = found_m + allowed_m;
   }
   return least_m;
 }

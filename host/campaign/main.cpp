@@ -11,6 +11,7 @@
 #include "firmware/base/find_file.h"
 #include "firmware/io/config/config.h"
 #include "host/campaign/config_name.h"
+#include "host/campaign/problems/problem_table.h"
 #include "host/campaign/runner.h"
 #include "host/campaign/scene_export.h"
 #include "host/campaign/search/finding_file.h"
@@ -28,7 +29,7 @@ std::atomic<bool> interrupted{false};
 
 struct Options {
   std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output,
-              search, scene;
+              search, scene, problems;
   uint64_t count = 500, seed = 1;
   int obstacles = 3;
   double fastest_mps = 0.5;
@@ -77,6 +78,10 @@ void declare(CommandLine& app, Options& options) {
       .range(0.3, 5.0)
       .not_nan();
   app.add_option("--scene", options.scene, "run one scene that --search printed, saved in this file").type_name("FILE");
+  app.add_option(
+         "--problems", options.problems,
+         "play MotionBenchMaker's problems in this folder (scene*.yaml, request*.yaml) with the arm of --config")
+      .type_name("FOLDER");
   app.add_subcommand("merge", "print the tables of all trials in files of --csv")
       .add_option("files", options.merge, "CSV files")
       .required();
@@ -197,7 +202,22 @@ int run_scene(const Options& options) {
   return kDone;
 }
 
+int play_problems(const Options& options) {
+  if (options.law == "plain") throw std::runtime_error("--problems: the law plain ignores obstacles");
+  const Config config = config_of(options);
+  const std::vector<Problem> problems = read_problems(options.problems, config.model.arm);
+  const std::vector<ProblemResult> results = play(problems, config, options.jobs, options.quiet, interrupted);
+  if (results.size() < problems.size()) {
+    fmt::print(stderr, "campaign: interrupted after {} of {} problems\n", results.size(), problems.size());
+    return kInterruptedBySignal;
+  }
+  if (!options.csv.empty()) write_problem_csv(options.csv, problems, results);
+  fmt::print("{}", problem_table(problems, results));
+  return kDone;
+}
+
 int act(const Options& options) {
+  if (!options.problems.empty()) return play_problems(options);
   if (!options.merge.empty()) return merge(options);
   if (!options.search.empty()) return run_search(options);
   if (!options.scene.empty()) return run_scene(options);

@@ -39,6 +39,7 @@ class StepController : public TrialController {
     if (model_.settings.foresight.enabled) {
       take_snapshot(model_, inputs, state_, now_s, snapshot_);
       guide_ = &foresight_.update(snapshot_);
+      output.guided = guide_->knots > 0;
     }
     output.ready = result.report.mode == (input.target ? Mode::kTrack : Mode::kHold);
     output.velocity_radps = result.command.velocity_radps;
@@ -115,8 +116,12 @@ class PlainTrackingController : public TrialController {
 
 }  // namespace
 
+std::unique_ptr<TrialController> make_controller(const Model& model) {
+  return std::make_unique<StepController>(model);
+}
+
 std::unique_ptr<TrialController> make_controller(const Model* model, const JudgeArm& arm, const Limits& limits) {
-  if (model) return std::make_unique<StepController>(*model);
+  if (model) return make_controller(*model);
   return std::make_unique<PlainTrackingController>(arm, limits);
 }
 

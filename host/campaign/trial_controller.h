@@ -19,6 +19,7 @@ struct ControllerInput {
 
 struct ControllerOutput {
   bool ready = false;     ///< the controller tracks the target, or holds if there is none
+  bool guided = false;    ///< foresight has a guide
   Joints velocity_radps;  ///< command
   double cpu_s = 0.0;     ///< CPU time of the cycle
   const char* message = "";
@@ -30,6 +31,9 @@ class TrialController {
   virtual ~TrialController() = default;
   virtual ControllerOutput cycle(const ControllerInput& input) = 0;
 };
+
+/// step() with `model`, called in process, and foresight. The model must outlive it.
+std::unique_ptr<TrialController> make_controller(const Model& model);
 
 /// The controller under test: step() with `model`, called in process, or plain tracking of the arm if `model` is null.
 /// Model and arm must outlive it.

@@ -85,7 +85,7 @@ void the_arm_keeps_clear_of_all_three_shapes(void**) {
       loop.cycle();
       if (loop.last.commanding) least_m = std::min(least_m, loop.last.clearance_m);
     }
-    check(least_m > 0.01 && least_m < 0.1, "shape %d: least clearance %g m", static_cast<int>(shape), least_m);
+    check(least_m > 0.003 && least_m < 0.1, "shape %d: least clearance %g m", static_cast<int>(shape), least_m);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/control/shield/required_clearance.h"
 #include "firmware/model/joint_axes.h"
 #include "firmware/model/turning_proximity.h"
 
@@ -97,6 +98,7 @@ class RowMaker {
         sustainable_(sustainable),
         range_(range),
         within_(is_within(range, sustainable)),
+        link_mps_(link_speeds()),
         rows_(rows) {}
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
@@ -128,7 +130,7 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, least, distance_m - settings_.hard_clearance_m, threat_mps);
+    add_hard(row, least, distance_m - required_m(pair), threat_mps);
     if (input_.comfort_weight == 0.0) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -145,8 +147,7 @@ class RowMaker {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
       const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
-      add_hard(row, least_mps(row, sustainable_), next.distance_m - settings_.hard_clearance_m,
-               std::min(approaching_mps, 0.0));
+      add_hard(row, least_mps(row, sustainable_), next.distance_m - required_m(pair), std::min(approaching_mps, 0.0));
     }
   }
 
@@ -187,6 +188,23 @@ class RowMaker {
     if (shape.other_joint < 0) return Vector3::Zero();
     return other_velocity_at(input_.arm, input_.poses, shape.other_joint, point);
   }
+  double required_m(const NearPair& pair) const {
+    return hard_clearance_m(settings_, input_.obstacles, pair.now.obstacle, link_mps_[pair.now.shape]);
+  }
+  /// Of the fastest point of each link shape's axis, by the last commanded velocity, m/s; empty where nothing is near.
+  BoundedList<double, kMaxShapes> link_speeds() const {
+    BoundedList<double, kMaxShapes> speeds_mps;
+    if (input_.clearance.near.size() == 0) return speeds_mps;
+    for (int s = 0; s < input_.clearance.links.size(); ++s) {
+      const Capsule& link = input_.clearance.links[s];
+      const int body = input_.arm.shapes[s].body;
+      const auto speed_mps = [&](const Vector3& point) {
+        return (point_jacobian(input_.poses, body, point) * input_.last_velocity_radps).norm();
+      };
+      speeds_mps.add(std::max(speed_mps(link.start), speed_mps(link.end)));
+    }
+    return speeds_mps;
+  }
   int body_of(const NearPair& pair) const { return input_.arm.shapes[pair.now.shape].body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
@@ -221,6 +239,7 @@ class RowMaker {
   const VelocityRange& sustainable_;
   const VelocityRange& range_;
   const bool within_;  ///< range_ lies in sustainable_: then the least value of a row is no smaller there
+  const BoundedList<double, kMaxShapes> link_mps_;
   RowSets& rows_;
   double least_room_m_ = std::numeric_limits<double>::infinity();
 };

@@ -11,7 +11,7 @@ namespace sidestep {
 /// the speed at which the obstacle approaches. Then d' = a q' - v. m is the least distance predicted for the next
 /// pass_horizon at constant velocity, t its time. Gains and clearances are those of ShieldSettings.
 ///
-/// hard: with r = d - hard_clearance, b is the larger of b1 and b2:
+/// hard: with r = d - c, c the clearance that the obstacle needs (required_clearance.h), b is the larger of b1 and b2:
 ///     b1 = k v - hard_gain r            the clearance decays at most exponentially
 ///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0. The speed of an approaching
 ///                                       obstacle does not count here, that of a receding one does

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/control/shield/required_clearance.h"
 #include "firmware/model/prediction.h"
 
 namespace sidestep {
@@ -19,6 +20,7 @@ constexpr double kPreviousEvasionFactor = 0.8;
 /// closest and of the last one, s.
 struct Threats {
   BoundedList<Obstacle, kMaxThreats> obstacles;
+  BoundedList<double, kMaxThreats> allowance_m;  // hard_clearance less what the obstacle needs
   double closest_s = 0.0;
   double last_s = 0.0;
 };
@@ -47,7 +49,10 @@ Threats find_threats(const ShieldSettings& settings, const Clearance& clearance,
       threats.closest_s = approach.time_s;
     }
   }
-  for (const int index : most_urgent_obstacles(clearance)) threats.obstacles.add(view.extrapolated(index));
+  for (const int index : most_urgent_obstacles(clearance)) {
+    threats.obstacles.add(view.extrapolated(index));
+    threats.allowance_m.add(settings.hard_clearance_m - hard_clearance_m(settings, view, index, 0.0));
+  }
   return threats;
 }
 
@@ -96,8 +101,8 @@ class RolloutCost {
     return distance + kDeficitWeight_per_m * clearance_deficit_m(velocity_radps, most_m);
   }
 
-  /// By how much the rollout comes closer than hard_clearance, m; exact up to most_m. Starts at the step that was worst
-  /// in the previous rollout, where the next one most likely fails as well.
+  /// By how much the rollout comes closer than the hard clearance, m; exact up to most_m. Starts at the step that was
+  /// worst in the previous rollout, where the next one most likely fails as well.
   double clearance_deficit_m(const JointVector& velocity_radps, double most_m) {
     const Rollout rollout = roll_out(input_, velocity_radps, threats_.last_s + kAfter_s);
     const double enough_m = settings_.hard_clearance_m - most_m;
@@ -107,7 +112,8 @@ class RolloutCost {
       const double after_s = (step + 1) * kStep_s;
       const LinkPoses poses = forward_kinematics(input_.arm, rollout[step], *input_.poses.others);
       const double clearance_m =
-          clearance_after(input_.arm, poses, threats_.obstacles.begin(), threats_.obstacles.size(), after_s, least_m);
+          clearance_after(input_.arm, poses, threats_.obstacles.begin(), threats_.obstacles.size(), after_s, least_m,
+                          threats_.allowance_m.begin());
       if (clearance_m < least_m) worst_step_ = step;
       least_m = clearance_m;
     }

@@ -13,7 +13,8 @@ namespace sidestep {
 /// latest time of closest approach among the near pairs that come closer than pass_clearance. Pairs of links are not
 /// examined.
 ///
-/// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance.
+/// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance (for
+/// obstacles at rest: what they need, required_clearance.h).
 ///
 /// Candidates:
 ///   - the plan, and the evasion of the previous cycle
@@ -23,7 +24,7 @@ namespace sidestep {
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
 ///
 /// Cost: the joint and tool terms of the objective (QpObjective), plus 1e4 per metre by which the rollout falls short
-/// of hard_clearance. The cost of the previous cycle's evasion is multiplied by 0.8, so that the arm does not alternate
+/// of that. The cost of the previous cycle's evasion is multiplied by 0.8, so that the arm does not alternate
 /// between two candidates. The cheapest candidate becomes the plan.
 ///
 /// `planned_radps` is the plan, n x 1; `rows` and `range` are those of its programme. Bounded: at most 15 programmes,

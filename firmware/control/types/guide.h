@@ -15,16 +15,24 @@ enum class ForesightStatus : int8_t {
                  ///< knots the law continues alone
 };
 
-constexpr int kMaxKnots = 4;
+constexpr int kMaxKnots = 32;
 
-/// A timed path in joint space, given by its knots. Between two knots every joint moves on a straight line with the
-/// profile 3u^2 - 2u^3. After the last knot the law holds the tool at the target and keeps the joints near that knot as
-/// far as the tool's task leaves freedom; with kWaiting the arm stays at the last knot instead.
+/// A timed path in joint space, given by its knots. Between two knots every joint moves on the cubic that has the
+/// positions and velocities of both (Hermite); from rest to rest that is a straight line with the profile 3u^2 - 2u^3.
+/// At the first and the last knot the velocity is 0. After the last knot the law holds the tool at the target and keeps
+/// the joints near that knot as far as the tool's task leaves freedom; with kWaiting the arm stays at the last knot
+/// instead.
 struct Guide {
   ForesightStatus foresight_status = ForesightStatus::kDirect;
   int knots = 0;                           ///< 0: no path to follow
   std::array<double, kMaxKnots> time_s{};  ///< increasing, on the clock of the cycle
   std::array<JointVector, kMaxKnots> position_rad;
+  std::array<JointVector, kMaxKnots> velocity_radps;
+
+  /// Appends a knot; there must be room.
+  void add(double at_s, const JointVector& q_rad, const JointVector& qd_radps);
+  /// The same at rest.
+  void add(double at_s, const JointVector& q_rad) { add(at_s, q_rad, JointVector::Zero(q_rad.size())); }
 
   double end_s() const { return knots > 0 ? time_s[knots - 1] : 0.0; }
 };

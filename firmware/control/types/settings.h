@@ -45,6 +45,7 @@ struct SidestepGains {
 struct ShieldSettings {
   bool enabled = true;                ///< off for experiments only
   double hard_clearance_m = 0.02;     ///< hard tier: kept as long as the hard rows can be met
+  double rest_clearance_m = 0.004;    ///< in place of hard_clearance_m, for what rests and is exactly known
   double hard_gain_per_s = 15.0;      ///< approach speed per metre above hard_clearance_m
   double pass_clearance_m = 0.04;     ///< pass tier: distance at the closest approach of a moving obstacle
   double pass_gain_per_s = 6.0;       ///< approach speed per metre above pass_clearance_m, at the closest approach

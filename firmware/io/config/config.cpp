@@ -82,6 +82,7 @@ void read_sidestep(YamlSection sidestep, SidestepGains& gains) {
 void read_shield(YamlSection section, ShieldSettings& shield) {
   section.flag("enabled", shield.enabled);
   section.number("hard_clearance_m", shield.hard_clearance_m, {0.0, 0.5});
+  section.number("rest_clearance_m", shield.rest_clearance_m, {0.0, 0.5});
   section.number("hard_gain_per_s", shield.hard_gain_per_s, {0.1, 100.0});
   section.number("pass_clearance_m", shield.pass_clearance_m, {0.0, 0.5});
   section.number("pass_gain_per_s", shield.pass_gain_per_s, {0.1, 100.0});

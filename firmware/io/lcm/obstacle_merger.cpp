@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-constexpr int kIdsPerNeighbour = 10000;
+constexpr int kIdsPerNeighbour = -kNeighbourIds;
 
 }  // namespace
 

@@ -13,11 +13,11 @@ using test::Random;
 namespace {
 
 Guide random_guide(Random& random, int knots) {
-  Guide guide{ForesightStatus::kGuided, knots, {}, {}};
+  Guide guide;
+  guide.foresight_status = ForesightStatus::kGuided;
   double time_s = 1.0;
   for (int k = 0; k < knots; ++k) {
-    guide.time_s[static_cast<size_t>(k)] = time_s;
-    guide.position_rad[static_cast<size_t>(k)] = random.configuration(lwa3());
+    guide.add(time_s, random.configuration(lwa3()));
     time_s += random.uniform(0.3, 2.0);
   }
   return guide;
@@ -49,6 +49,45 @@ void the_velocity_of_a_guide_is_the_slope_of_its_position(void**) {
   }
 }
 
+void a_guide_passes_its_knots_at_their_velocities(void**) {
+  Random random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    Guide guide = random_guide(random, 4);
+    for (size_t k : {1, 2}) guide.velocity_radps[k] = random.joints(7, -2.0, 2.0);
+    const double h_s = 1e-7;
+    for (size_t k = 0; k < 4; ++k) {
+      for (const double at_s : {guide.time_s[k] - h_s, guide.time_s[k], guide.time_s[k] + h_s}) {
+        check_near(point_of(guide, at_s).position_rad, guide.position_rad[k], 1e-6);
+        check_near(point_of(guide, at_s).velocity_radps, guide.velocity_radps[k], 1e-4);
+      }
+    }
+    const double at_s = random.uniform(0.9, guide.end_s() + 0.1), step_s = 1e-6;
+    const JointVector slope =
+        (point_of(guide, at_s + step_s).position_rad - point_of(guide, at_s - step_s).position_rad) / (2.0 * step_s);
+    check_near_because(point_of(guide, at_s).velocity_radps, slope, 1e-4, "trial %d at %g s", trial, at_s);
+  }
+}
+
+void a_guide_waits_for_an_arm_that_cannot_follow(void**) {
+  Random random(5);
+  const Guide guide = random_guide(random, 3);
+  const double period_s = 0.01, at_s = 0.5 * (guide.time_s[0] + guide.time_s[1]);
+  const auto time_after_s = [&](double deviation_rad, GuideProgress& progress) {
+    const double before_s = at_s - progress.delay_s;
+    JointVector q_rad = point_of(guide, before_s).position_rad;
+    q_rad[2] += deviation_rad;
+    return guide_time_s(lwa3(), guide, q_rad, at_s, period_s, progress) - before_s + period_s;
+  };
+  for (const auto& [deviation_rad, rate] : {std::pair{0.0, 1.0}, {0.05, 1.0}, {0.125, 0.5}, {0.2, 0.1}, {3.0, 0.1}}) {
+    GuideProgress progress{guide.time_s[0], 0.3};
+    check_near(time_after_s(deviation_rad, progress), rate * period_s, 1e-9);
+    check_near(progress.delay_s, 0.3 + (1.0 - rate) * period_s, 1e-9);
+  }
+  GuideProgress of_another{guide.time_s[0] - 1.0, 0.3};
+  guide_time_s(lwa3(), guide, point_of(guide, at_s).position_rad, at_s, period_s, of_another);
+  check_near(of_another.delay_s, 0.0, 0.0);
+}
+
 void after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there(void**) {
   Random random(3);
   const SidestepGains gains;
@@ -76,6 +115,8 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_guide_rests_in_its_knots_and_before_and_after),
       cmocka_unit_test(the_velocity_of_a_guide_is_the_slope_of_its_position),
+      cmocka_unit_test(a_guide_passes_its_knots_at_their_velocities),
+      cmocka_unit_test(a_guide_waits_for_an_arm_that_cannot_follow),
       cmocka_unit_test(after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -147,7 +147,8 @@ void a_collision_is_judged_by_the_hard_clearance_of_the_settings(void**) {
         clearance_after(loop.model.arm, poses, &sphere, 1, 0.0, 1.0) - 0.007;
   ShieldSettings& shield = loop.model.settings.shield;
   for (const double clearance_m : {0.002, 0.06}) {
-    shield.hard_clearance_m = shield.pass_clearance_m = shield.comfort_clearance_m = clearance_m;
+    shield.rest_clearance_m = shield.hard_clearance_m = shield.pass_clearance_m = shield.comfort_clearance_m =
+        clearance_m;
     assert_int_equal(forecast_of(loop).collides, clearance_m > 0.007);
   }
 }

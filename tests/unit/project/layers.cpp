@@ -100,7 +100,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kLayers = {
     {"control/paper", {"base", "model", "control/types"}},
     {"control/shield", {"base", "model", "control/types"}},
     {"control", {"base", "model", "control/types", "control/paper", "control/shield"}},
-    {"foresight", {"base", "model", "control/types", "control"}},
+    {"foresight", {"base", "model", "control/types", "control/shield", "control"}},
     {"io/lcm", {"base", "model", "control/types", "control"}},
     {"io/config", {"base", "model", "model/load", "control/types", "control", "io/lcm"}},
     {"io/blackbox", {"base", "model", "control/types", "control", "io/lcm", "io/config"}},

@@ -1,5 +1,7 @@
 #include "firmware/control/shield/constraint_rows.h"
 
+#include "firmware/control/shield/required_clearance.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -169,7 +171,7 @@ void the_bounds_of_distance_rows_are_barriers(void**) {
     const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
     if (!joints_matter(jacobian.transpose() * pair.now.normal)) continue;
     assert_int_equal(rows.size(), 2);
-    check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.hard_clearance_m), 1e-9);
+    check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.rest_clearance_m), 1e-9);
     check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
   }
 }
@@ -257,6 +259,14 @@ Vector3 turn_while_braking(const Scene& scene, int body) {
   return braking_s / 1e-6 * turn.angle() * turn.axis();
 }
 
+/// Of the ends of a link's axis at the last velocity, by a difference of two configurations.
+double fastest_mps(const Scene& scene, int shape) {
+  const double h_s = 1e-6;
+  const LinkPoses after = forward_kinematics(lwa3(), scene.q_rad + h_s * scene.last_radps);
+  const Capsule now = transformed(scene.poses, shape_of(shape)), then = transformed(after, shape_of(shape));
+  return std::max((then.start - now.start).norm(), (then.end - now.end).norm()) / h_s;
+}
+
 void turning_links_have_hard_rows_for_the_next_points(void**) {
   Random random(8);
   int seen = 0;
@@ -275,12 +285,15 @@ void turning_links_have_hard_rows_for_the_next_points(void**) {
       assert_int_equal(rows.size(), without);
       continue;
     }
+    const double clearance_m =
+        kSettings.rest_clearance_m + std::min(1.0, fastest_mps(scene, shape) / kFastLink_mps) *
+                                         (kSettings.hard_clearance_m - kSettings.rest_clearance_m);
     const PosedShape link{shape_of(shape), scene.poses, scene.clearance.links[shape]};
     for (const Proximity& next : proximities_after_turn(link, obstacle, pair.now, turn_while_braking(scene, body))) {
       if (next.distance_m > kSettings.range_m) continue;
       const JointVector expected = point_jacobian(scene.poses, body, next.on_arm).transpose() * next.normal;
       if (!joints_matter(expected)) continue;
-      const double bound = hard_bound(expected, next.distance_m - kSettings.hard_clearance_m);
+      const double bound = hard_bound(expected, next.distance_m - clearance_m);
       const bool found = std::any_of(rows.begin(), rows.end(), [&](const ConstraintRow& row) {
         return (row.row - expected).norm() < 1e-4 && std::abs(row.bound - bound) < 1e-4;
       });

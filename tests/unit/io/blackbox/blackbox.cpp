@@ -176,7 +176,7 @@ void a_run_among_jumping_obstacles_replays_bit_for_bit(void**) {
 void the_statuses_in_a_log_equal_those_published_with_a_guide(void**) {
   RecordedRun run(1.0);
   run.guide.foresight_status = ForesightStatus::kGuided;
-  run.guide.knots = 1;
+  run.guide.add(0.0, test::home_rad());
   for (int i = 0; i < 200; ++i) {
     run.receive_obstacles(1);
     run.receive_target();

@@ -127,6 +127,7 @@ const Key kNumbers[] = {
     {"sidestep", "v_max_mps", 0.75, [](const Config& c) { return c.model.settings.sidestep.v_max_mps; }},
     {"sidestep", "lambda_0", 0.75, [](const Config& c) { return c.model.settings.sidestep.lambda_0; }},
     {"sidestep", "sigma_0", 0.75, [](const Config& c) { return c.model.settings.sidestep.sigma_0; }},
+    {"shield", "rest_clearance_m", 0.003, [](const Config& c) { return c.model.settings.shield.rest_clearance_m; }},
     {"shield", "hard_clearance_m", 0.03, [](const Config& c) { return c.model.settings.shield.hard_clearance_m; }},
     {"shield", "hard_gain_per_s", 0.75, [](const Config& c) { return c.model.settings.shield.hard_gain_per_s; }},
     {"shield", "pass_clearance_m", 0.3, [](const Config& c) { return c.model.settings.shield.pass_clearance_m; }},

@@ -23,10 +23,8 @@ controller_status_t decoded_status(const Report& report) {
 Guide guide_from_home() {
   Guide guide;
   guide.foresight_status = ForesightStatus::kGuided;
-  guide.knots = 2;
-  guide.time_s = {10.0, 12.0};
-  guide.position_rad[0] = test::home_rad();
-  guide.position_rad[1] = test::home_rad() + JointVector::Constant(test::lwa3().joints, 0.3);
+  guide.add(10.0, test::home_rad());
+  guide.add(12.0, test::home_rad() + JointVector::Constant(test::lwa3().joints, 0.3));
   return guide;
 }
 

@@ -1,0 +1,23 @@
+#include "firmware/control/shield/required_clearance.h"
+
+namespace sidestep {
+namespace {
+
+constexpr double kMoves_mps = 0.05;
+
+}  // namespace
+
+double doubt(const Obstacle& obstacle) {
+  if (obstacle.kind == Kind::kPerson || obstacle.id <= kNeighbourIds) return 1.0;
+  const double turning_mps = obstacle.angular_velocity_radps.norm() * obstacle.capsule.extent_m();
+  return std::min(1.0, (obstacle.velocity_mps.norm() + turning_mps) / kMoves_mps);
+}
+
+double hard_clearance_m(const ShieldSettings& settings, const ObstacleView& view, int obstacle, double link_mps) {
+  const double full_m = settings.hard_clearance_m;
+  if (view.growth_of(obstacle) > 0.0 || link_mps >= kFastLink_mps) return full_m;
+  const double share = std::max(doubt(view.at(obstacle)), link_mps / kFastLink_mps);
+  return full_m - (1.0 - share) * std::max(0.0, full_m - settings.rest_clearance_m);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "firmware/base/split_mix64.h"
+#include "firmware/foresight/free_space.h"
+#include "firmware/foresight/path_timing.h"
+
+namespace sidestep {
+
+/// Plans paths among obstacles at rest: out of boxes, into shelves, under tables. Two random trees (RRT-Connect;
+/// Kuffner and LaValle 2000), one from the arm and one from up to 8 postures at the target, grow toward each other in
+/// joint space. The path where they meet is shortened, and timed with blended corners (path_timing.h).
+///
+/// The work is cut into slices, one per call of plan(): about kChecksPerSlice configurations are examined. What a slice
+/// has found is kept for the next one while the target and the obstacles at rest stay where they are. Large: lives on
+/// the heap.
+class TreePlanner {
+ public:
+  explicit TreePlanner(const Model& model);
+
+  /// Forgets what it has found, and restarts the random sequence from foresight.seed.
+  void reset();
+
+  /// One slice, from a snapshot in TRACK. Returns a guide, with ForesightStatus::kGuided, in the slice that completes
+  /// one; it starts with zero velocity, now or after a pause, ends at least 1 s before the horizon, and up to the
+  /// horizon moving obstacles, at their present velocities, stay foresight.clearance_m away. Else without knots, for
+  /// example while the target moves.
+  Guide plan(const Snapshot& from);
+
+ private:
+  struct Node {
+    JointVector q_rad;
+    int parent;  ///< -1: a root
+  };
+  static constexpr int kMaxNodes = 4000;
+  static constexpr int kMaxGoals = 8;
+  using Tree = BoundedList<Node, kMaxNodes>;
+  enum class Extension { kTrapped, kAdvanced, kReached };
+
+  bool is_current(const Snapshot& now) const;
+  void begin(const Snapshot& from);
+  void find_goals();
+  void grow();
+  void clear_trees();
+  JointVector random_configuration();
+  int nearest(const Tree& tree, const JointVector& q_rad) const;
+  Extension extend(Tree& tree, const JointVector& toward_rad);
+  Extension connect(Tree& tree, const JointVector& toward_rad);
+  bool join();
+  void shorten();
+  void try_shortcut();
+  double length_rad(const JointVector& from_rad, const JointVector& to_rad) const;
+  Guide finish(const Snapshot& from);
+  bool is_clear_of_movers(const Snapshot& from, const Guide& guide) const;
+
+  const Model& model_;
+  SplitMix64 random_;
+  FreeSpace free_;
+  bool valid_ = false;  ///< the following belong to a target and obstacles
+  Target target_;
+  JointVector start_rad_;
+  BoundedList<JointVector, kMaxGoals> goals_rad_;
+  Tree trees_[2];        ///< from the arm and from the goals
+  int checks_left_ = 0;  ///< of this slice
+  JointPath path_;       ///< from the arm to a goal, once the trees have met
+  int pruned_ = 0;       ///< up to this point of the path no corner can be left out
+  int shortcuts_left_ = 0;
+};
+
+}  // namespace sidestep

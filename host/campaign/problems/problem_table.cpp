@@ -1,0 +1,73 @@
+#include "host/campaign/problems/problem_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "firmware/base/fail.h"
+
+namespace sidestep::campaign {
+namespace {
+
+using Results = std::vector<ProblemResult>;
+
+template <typename Holds>
+long count(const Results& results, const Holds& holds) {
+  return std::count_if(results.begin(), results.end(), holds);
+}
+
+/// Of the solved ones; "-" without any.
+std::string median_arrival_s(const Results& results) {
+  std::vector<double> arrivals_s;
+  for (const ProblemResult& result : results)
+    if (result.arrived(0.01) && !result.touched()) arrivals_s.push_back(result.arrival_s);
+  if (arrivals_s.empty()) return "-";
+  const auto middle = arrivals_s.begin() + static_cast<long>(arrivals_s.size() / 2);
+  std::nth_element(arrivals_s.begin(), middle, arrivals_s.end());
+  return fmt::format("{:.2f}", *middle);
+}
+
+std::string line(const std::string& kind, const Results& results) {
+  double clearance_m = sim::kNothingNear;
+  for (const ProblemResult& result : results) clearance_m = std::min(clearance_m, result.clearance_m);
+  const auto arrived = [&](double within_m) {
+    return count(results, [=](const ProblemResult& r) { return r.arrived(within_m) && !r.touched(); });
+  };
+  return fmt::format("{:20}{:10}{:10}{:10}{:10}{:14.1f}{:>16}\n", kind, results.size(), arrived(0.01), arrived(0.005),
+                     count(results, [](const ProblemResult& r) { return r.touched(); }), clearance_m * 1e3,
+                     median_arrival_s(results));
+}
+
+}  // namespace
+
+std::string problem_table(const std::vector<Problem>& problems, const Results& results) {
+  std::string table = fmt::format("{:20}{:>10}{:>10}{:>10}{:>10}{:>14}{:>16}\n", "", "problems", "solved", "solved",
+                                  "contact", "clearance", "arrival");
+  table += fmt::format("{:20}{:>10}{:>10}{:>10}{:>10}{:>14}{:>16}\n", "", "", "to 10 mm", "to 5 mm", "", "min, mm",
+                       "median, s");
+  for (size_t first = 0; first < problems.size();) {
+    size_t end = first;
+    while (end < problems.size() && problems[end].kind == problems[first].kind) ++end;
+    table += line(problems[first].kind,
+                  Results(results.begin() + static_cast<long>(first), results.begin() + static_cast<long>(end)));
+    first = end;
+  }
+  return table + line("all", results) +
+         "Published for the whole set of 7 x 100: VAMP (RRT-Connect) solves 699. cuRobo solves all of its 800.\n";
+}
+
+void write_problem_csv(const std::string& file, const std::vector<Problem>& problems, const Results& results) {
+  std::ofstream stream(file);
+  stream << "kind,name,error_m,error_rad,arrival_s,clearance_m,self_clearance_m,guided\n";
+  for (size_t i = 0; i < results.size(); ++i) {
+    const ProblemResult& r = results[i];
+    fmt::print(stream, "{},{},{:.6f},{:.6f},{:.2f},{:.6f},{:.6f},{:.3f}\n", problems[i].kind, problems[i].name,
+               r.error_m, r.error_rad, r.arrival_s, r.clearance_m, r.self_clearance_m, r.guided);
+  }
+  stream.close();
+  if (!stream) fail("{}: cannot be written", file);
+}
+
+}  // namespace sidestep::campaign

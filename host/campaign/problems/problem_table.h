@@ -1,0 +1,14 @@
+#pragma once
+
+#include "host/campaign/problems/problem_trial.h"
+
+namespace sidestep::campaign {
+
+/// A line for each kind of problem and one for all, and below what planners for static scenes report.
+std::string problem_table(const std::vector<Problem>& problems, const std::vector<ProblemResult>& results);
+
+/// A row for each problem. Throws std::runtime_error, one line, if the file cannot be written.
+void write_problem_csv(const std::string& file, const std::vector<Problem>& problems,
+                       const std::vector<ProblemResult>& results);
+
+}  // namespace sidestep::campaign

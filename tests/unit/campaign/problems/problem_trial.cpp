@@ -1,0 +1,61 @@
+#include "host/campaign/problems/problem_trial.h"
+
+#include "host/campaign/problems/problem_table.h"
+#include "tests/support/check.h"
+
+using namespace sidestep;
+using namespace sidestep::campaign;
+
+namespace {
+
+std::vector<ProblemResult> results_of(const std::vector<Problem>& problems, const Config& config) {
+  const std::atomic<bool> stop{false};
+  return play(problems, config, 2, true, stop);
+}
+
+/// From above it to below it. Foresight's planner finds the way, the law alone wanders about for 8 s.
+void the_arm_reaches_under_a_table(void**) {
+  Config config = load_config("firmware/config/panda.yaml", {});
+  const std::vector<Problem> problems = read_problems("tests/data/problems", config.model.arm);
+  const ProblemResult planned = results_of(problems, config)[0];
+  check(planned.arrived(0.005) && !planned.touched(), "%g m away, %g m clear", planned.error_m, planned.clearance_m);
+  check(planned.arrival_s < 2.5, "after %g s", planned.arrival_s);
+  check(planned.guided > 0.5, "guided for %g of the time", planned.guided);
+  config.model.settings.foresight.enabled = false;
+  const ProblemResult alone = results_of(problems, config)[0];
+  check(!alone.touched() && alone.guided == 0.0, "%g m clear", alone.clearance_m);
+  check(alone.arrival_s > 5.0, "the law alone arrives after %g s: the problem shows nothing", alone.arrival_s);
+}
+
+void the_table_counts_what_was_solved(void**) {
+  ProblemResult solved, near, touched;
+  solved.clearance_m = near.clearance_m = 0.004;
+  solved.self_clearance_m = near.self_clearance_m = touched.self_clearance_m = 0.02;
+  solved.arrival_s = near.arrival_s = 1.5;
+  near.error_m = 0.007;
+  touched.clearance_m = -0.001;
+  Problem one, other;
+  one.kind = "box";
+  other.kind = "cage";
+  const std::string table = problem_table({one, one, other}, {solved, near, touched});
+  const auto has_line = [&](const std::string& kind, const std::string& counts) {
+    const size_t at = table.find("\n" + kind);
+    std::string line = table.substr(at + 1, table.find('\n', at + 1) - at - 1), packed;
+    for (const char c : line)
+      if (c != ' ' || (!packed.empty() && packed.back() != ' ')) packed += c;
+    check(packed == kind + counts, "'%s'", packed.c_str());
+  };
+  has_line("box", " 2 2 1 0 4.0 1.50");
+  has_line("cage", " 1 0 0 1 -1.0 -");
+  has_line("all", " 3 2 1 1 -1.0 1.50");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(the_arm_reaches_under_a_table),
+      cmocka_unit_test(the_table_counts_what_was_solved),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,185 @@
+#include "firmware/foresight/tree_planner.h"
+
+#include <memory>
+
+#include "firmware/model/link_proximity.h"
+#include "firmware/model/prediction.h"
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/lwa3.h"
+#include "tests/support/random.h"
+
+using namespace sidestep;
+using test::lwa3;
+using test::Random;
+
+namespace {
+
+const Model& model() {
+  static const Model model = test::lwa3_model("sidestep");
+  return model;
+}
+
+void add(Snapshot& snapshot, const Obstacle& obstacle) {
+  snapshot.nearby.obstacles[static_cast<size_t>(snapshot.nearby.count++)] = obstacle;
+}
+
+/// Least distance to the obstacles, by the tested function of the shield.
+double clearance_m(const Snapshot& snapshot, const JointVector& q_rad) {
+  return clearance_after(lwa3(), forward_kinematics(lwa3(), q_rad), snapshot.nearby.obstacles.data(),
+                         snapshot.nearby.count, 0.0, 1.0);
+}
+
+/// Least distance of two links above their clearance.
+double self_room_m(const JointVector& q_rad) {
+  const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
+  double least_m = HUGE_VAL;
+  for (const SelfPair& pair : model().self_pairs) {
+    const auto& shapes = lwa3().shapes;
+    const Capsule a = transformed(poses, shapes[static_cast<size_t>(pair.first)]);
+    const Capsule b = transformed(poses, shapes[static_cast<size_t>(pair.second)]);
+    least_m = std::min(least_m, measure_pair(a, b).distance_m - pair.clearance_m);
+  }
+  return least_m;
+}
+
+JointVector free_configuration(const Snapshot& snapshot, Random& random) {
+  while (true) {
+    const JointVector q_rad = random.configuration(lwa3(), 0.8);
+    if (clearance_m(snapshot, q_rad) > 0.02 && self_room_m(q_rad) > 0.005) return q_rad;
+  }
+}
+
+/// Eight boxes and cylinders at rest, the arm in a free configuration and the target in another one, with its
+/// orientation every other time.
+std::unique_ptr<Snapshot> random_world(Random& random) {
+  auto snapshot = std::make_unique<Snapshot>();
+  snapshot->moves = snapshot->tracking = true;
+  snapshot->now_s = 3.0;
+  for (int i = 0; i < 8; ++i) {
+    Vector3 centre = random.inside(-0.9, 0.9);
+    while (centre.head<2>().norm() < 0.35) centre = random.inside(-0.9, 0.9);
+    const Matrix3 turn = random.turn().toRotationMatrix();
+    add(*snapshot, i % 2 ? box_obstacle(centre, turn, random.inside(0.02, 0.5))
+                         : cylinder_obstacle(centre, turn, random.uniform(0.02, 0.1), random.uniform(0.1, 0.6)));
+  }
+  snapshot->arm.position_rad = free_configuration(*snapshot, random);
+  snapshot->arm.velocity_radps = JointVector::Zero(7);
+  const LinkPoses goal = forward_kinematics(lwa3(), free_configuration(*snapshot, random));
+  snapshot->target.position_m = goal.tool_position;
+  snapshot->target.tracks_orientation = random.chance(0.5);
+  snapshot->target.orientation = Quaternion(goal.tool_rotation);
+  return snapshot;
+}
+
+Guide plan(TreePlanner& planner, const Snapshot& snapshot, int slices = 200) {
+  for (int i = 0; i < slices; ++i) {
+    const Guide guide = planner.plan(snapshot);
+    if (guide.knots > 0) return guide;
+  }
+  return {};
+}
+
+void plans_are_free_and_end_at_the_target(void**) {
+  Random random(1);
+  int found = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const auto snapshot = random_world(random);
+    const auto planner = std::make_unique<TreePlanner>(model());
+    const Guide guide = plan(*planner, *snapshot);
+    if (guide.knots == 0) continue;
+    ++found;
+    assert_int_equal(static_cast<int>(guide.foresight_status), static_cast<int>(ForesightStatus::kGuided));
+    assert_true(guide.position_rad[0] == snapshot->arm.position_rad);
+    const double rest_m = model().settings.shield.rest_clearance_m;
+    for (double at_s = guide.time_s[0]; at_s < guide.end_s(); at_s += 0.002) {
+      const JointVector q_rad = point_of(guide, at_s).position_rad;
+      check(clearance_m(*snapshot, q_rad) > 0.5 * rest_m, "trial %d: %g m", trial, clearance_m(*snapshot, q_rad));
+      check(self_room_m(q_rad) > -0.005, "trial %d: %g m", trial, self_room_m(q_rad));
+    }
+    const LinkPoses end = forward_kinematics(lwa3(), point_of(guide, guide.end_s()).position_rad);
+    check_near(end.tool_position, snapshot->target.position_m, 1e-3);
+    if (snapshot->target.tracks_orientation)
+      check(Quaternion(end.tool_rotation).angularDistance(snapshot->target.orientation) < 1.1e-2, "trial %d", trial);
+  }
+  check(found >= 36, "only %d of 40 were found", found);  // a goal whose way takes more than the horizon is none
+}
+
+/// The tool reaches through a window of 30 cm in a wall that is wider than the arm.
+void a_path_leads_through_a_window(void**) {
+  Snapshot snapshot;
+  snapshot.moves = snapshot.tracking = true;
+  const double wall_m = 0.4, half_m = 0.15, height_m = 0.6;
+  for (const double side : {-1.0, 1.0}) {
+    add(snapshot, box_obstacle({wall_m, side * (half_m + 0.5), 0.6}, Matrix3::Identity(), {0.02, 1.0, 2.0}));
+    add(snapshot, box_obstacle({wall_m, 0, height_m + side * (half_m + 0.4)}, Matrix3::Identity(), {0.02, 0.3, 0.8}));
+  }
+  snapshot.arm.position_rad = test::home_rad();
+  snapshot.arm.position_rad[0] = M_PI;
+  snapshot.arm.velocity_radps = JointVector::Zero(7);
+  snapshot.target.position_m = Vector3(wall_m + 0.15, 0, height_m);
+  const auto planner = std::make_unique<TreePlanner>(model());
+  const Guide guide = plan(*planner, snapshot, 1000);
+  assert_true(guide.knots > 0);
+  for (double at_s = 0.0; at_s < guide.end_s(); at_s += 0.002)
+    assert_true(clearance_m(snapshot, point_of(guide, at_s).position_rad) > 0.002);
+}
+
+void the_same_snapshots_give_the_same_plan(void**) {
+  Random random(2);
+  const auto snapshot = random_world(random);
+  const auto one = std::make_unique<TreePlanner>(model()), two = std::make_unique<TreePlanner>(model());
+  const Guide first = plan(*one, *snapshot), second = plan(*two, *snapshot);
+  assert_true(first.knots > 0);
+  assert_int_equal(first.knots, second.knots);
+  for (size_t k = 0; k < static_cast<size_t>(first.knots); ++k)
+    check_near(first.position_rad[k], second.position_rad[k], 0.0);
+}
+
+void a_target_that_moves_has_no_plan(void**) {
+  Random random(3);
+  const auto snapshot = random_world(random);
+  snapshot->target.velocity_mps.x() = 0.1;
+  const auto planner = std::make_unique<TreePlanner>(model());
+  assert_int_equal(plan(*planner, *snapshot, 50).knots, 0);
+}
+
+/// A ball flies through the middle of the way while the arm would be there.
+void a_plan_lets_a_moving_obstacle_pass(void**) {
+  Random random(4);
+  int blocked = 0, found = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    const auto snapshot = random_world(random);
+    const auto planner = std::make_unique<TreePlanner>(model());
+    const Guide alone = plan(*planner, *snapshot);
+    if (alone.knots == 0) continue;
+    const double middle_s = 0.5 * (alone.end_s() - snapshot->now_s);
+    const LinkPoses there = forward_kinematics(lwa3(), point_of(alone, snapshot->now_s + middle_s).position_rad);
+    const Vector3 velocity_mps = 0.5 * random.direction();
+    Obstacle ball = sphere_obstacle(there.tool_position - middle_s * velocity_mps, 0.05);
+    ball.velocity_mps = velocity_mps;
+    add(*snapshot, ball);
+    planner->reset();
+    const Guide guide = plan(*planner, *snapshot);
+    ++blocked;
+    if (guide.knots == 0) continue;
+    ++found;
+    for (double after_s = 0.0; after_s < model().settings.foresight.horizon_s; after_s += 0.06) {
+      const LinkPoses poses = forward_kinematics(lwa3(), point_of(guide, snapshot->now_s + after_s).position_rad);
+      const double clear_m = clearance_after(lwa3(), poses, &ball, 1, after_s, 1.0);
+      check(clear_m >= model().settings.foresight.clearance_m - 1e-9, "trial %d: %g m", trial, clear_m);
+    }
+  }
+  check(found * 2 > blocked, "%d of %d", found, blocked);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(plans_are_free_and_end_at_the_target),  cmocka_unit_test(a_path_leads_through_a_window),
+      cmocka_unit_test(the_same_snapshots_give_the_same_plan), cmocka_unit_test(a_target_that_moves_has_no_plan),
+      cmocka_unit_test(a_plan_lets_a_moving_obstacle_pass),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
