@@ -26,6 +26,12 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, model.arm, input.position_rad));
 }
 
+NominalCommand scaled(NominalCommand nominal, double scale) {
+  nominal.velocity_radps *= scale;
+  nominal.tool_velocity_mps *= scale;
+  return nominal;
+}
+
 /// Weight of the comfort tier, s2/m2. Far from the target a detour costs little, so comfort weighs much; at the target
 /// the tool's task comes first. A guide keeps its own clearance.
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
@@ -130,10 +136,13 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;
+  // Only TRACK is slowed: a retreat in HOLD is not the operator's.
+  const double scale = next.supervision.mode == Mode::kTrack ? monitored.speed_scale : 1.0;
+  const double period_s = model.settings.period_s();
   const double guide_s =
-      guide ? guide_time_s(model.arm, *guide, arm.position_rad, now_s, model.settings.period_s(), next.guide_progress)
+      guide ? guide_time_s(model.arm, *guide, arm.position_rad, now_s, period_s, scale * period_s, next.guide_progress)
             : now_s;
-  const NominalCommand nominal = evaluate_law(model, input, next, guide, guide_s);
+  const NominalCommand nominal = scaled(evaluate_law(model, input, next, guide, guide_s), scale);
   probe.passed(Stage::kLaw);
 
   const Mode& mode = next.supervision.mode;  // latch_not_finite() may still change it
@@ -183,6 +192,7 @@ Result step(const Model& model, const State& state, const Inputs& inputs, double
   report.mode = next.supervision.mode;
   report.fault = next.supervision.fault;
   report.message = next.supervision.message;
+  report.speed_scale = monitored.speed_scale;
   // The command at rest that ends a stream after a fault is sent as well.
   result.commanding = next.stream.running || (was_running && report.mode == Mode::kFault);
   return result;

@@ -47,6 +47,7 @@ struct Report {
   ForesightStatus foresight_status = ForesightStatus::kDirect;
   double guide_horizon_s = 0.0;  ///< until the end of the guide; 0 without one
   const Guide* guide = nullptr;  ///< the guide of the inputs, where this cycle followed it
+  double speed_scale = 1.0;      ///< as the operator asks for; 0 while paused
   const char* message = "";      ///< static text
 };
 

@@ -15,12 +15,12 @@ constexpr double kLeastRate = 0.1;
 }  // namespace
 
 double guide_time_s(const Arm& arm, const Guide& guide, const JointVector& position_rad, double now_s, double period_s,
-                    GuideProgress& progress) {
+                    double step_s, GuideProgress& progress) {
   if (progress.start_s != guide.time_s[0]) progress = {guide.time_s[0], 0.0};
   const JointVector deviation_rad = point_of(guide, now_s - progress.delay_s).position_rad - position_rad;
   const double largest_rad = deviation_rad.cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff();
   const double rate = std::clamp((kLeft_rad - largest_rad) / (kLeft_rad - kFollows_rad), kLeastRate, 1.0);
-  progress.delay_s += (1.0 - rate) * period_s;
+  progress.delay_s += period_s - rate * step_s;
   return now_s - progress.delay_s;
 }
 

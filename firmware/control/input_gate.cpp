@@ -33,6 +33,13 @@ Verdict InputGate::accept(Target& target, double now_s) {
   return {target_order_.accept(target.utime, now_s, timeouts_.target_s), nullptr};
 }
 
+/// After the timeout of targets a restarted operator is believed.
+Verdict InputGate::accept(Control& control, double now_s) {
+  if (!plausible(control)) return rejected("control with impossible values");
+  if (!is_ordered()) return kAccepted;
+  return {control_order_.accept(control.utime, now_s, timeouts_.target_s), nullptr};
+}
+
 Verdict InputGate::accept(OtherJoints& joints, double now_s) {
   if (!plausible(joints)) return rejected("other joints with impossible values");
   if (is_ordered() && !other_joints_order_.accept(joints.utime, now_s, timeouts_.obstacles_s)) return {};

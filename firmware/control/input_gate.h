@@ -36,6 +36,7 @@ class InputGate {
   /// was not accepted is not to be used. now_s: local time of receipt.
   Verdict accept(ArmState& arm, double now_s);
   Verdict accept(Target& target, double now_s);
+  Verdict accept(Control& control, double now_s);
   Verdict accept(ObstacleSet& obstacles, int64_t utime, double now_s);
   /// Completes the positions of the named joints by the last ones of the others, and adds velocities.
   Verdict accept(OtherJoints& joints, double now_s);
@@ -46,7 +47,7 @@ class InputGate {
   int joints_;
   Timeouts timeouts_;
   InputSource source_;
-  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_;
+  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_, control_order_;
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;
 };

@@ -128,7 +128,11 @@ MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double no
 
   monitor.skipped_in_a_row = inputs.skipped_cycles > 0 ? monitor.skipped_in_a_row + inputs.skipped_cycles : 0;
   status.late = monitor.skipped_in_a_row >= kMaxSkippedCycles;
-  status.stop = inputs.stop;
+  const Control control = inputs.control.message ? *inputs.control.message : Control{};
+  status.stop = inputs.stop || control.command == ControlCommand::kStop;
+  status.paused = control.command == ControlCommand::kPause;
+  status.operator_silent = timeouts.control_s > 0.0 && !inputs.control.fresh(now_s, timeouts.control_s);
+  result.speed_scale = status.paused || status.operator_silent ? 0.0 : control.speed_scale;
   status.foreign_command = now_s - inputs.foreign_command_s <= timeouts.consistent_s;
   return result;
 }

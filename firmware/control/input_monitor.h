@@ -40,6 +40,7 @@ struct ArmContinuity {
 struct MonitorResult {
   InputStatus status;
   ArmContinuity continuity;
+  double speed_scale = 1.0;  ///< as the operator asks for; 0 while paused, or silent where an operator is needed
 };
 
 /// Compares the ages of the inputs with their timeouts and the arm state with the ones accepted before. One arm state

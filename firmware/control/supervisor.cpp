@@ -29,6 +29,8 @@ Supervision next_mode(const Supervision& last, const InputStatus& status) {
   if (!status.arm_fresh) return {Mode::kBrake, Fault::kNone, "braking: the last consistent arm state is too old"};
   if (!status.obstacles_fresh) return {Mode::kBrake, Fault::kNone, "braking: the obstacles are too old"};
   if (status.late) return {Mode::kBrake, Fault::kNone, "braking: too many cycles in a row were skipped"};
+  if (status.paused) return {Mode::kHold, Fault::kNone, "holding: paused"};
+  if (status.operator_silent) return {Mode::kHold, Fault::kNone, "holding: the operator is silent"};
   if (!status.target_known) return {Mode::kHold, Fault::kNone, "holding: no target yet"};
   if (!status.target_fresh) return {Mode::kHold, Fault::kNone, "holding: the target is too old"};
   return {Mode::kTrack, Fault::kNone, "tracking"};

@@ -18,6 +18,8 @@ struct InputStatus {
   bool target_fresh = false;     ///< not older than timeouts.target_s
   bool late = false;             ///< 3 or more cycles were skipped since the last cycle on time
   bool stop = false;             ///< the process has been asked to end
+  bool paused = false;           ///< by the operator
+  bool operator_silent = false;  ///< an operator is needed, and the newest control message is older than its timeout
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
 
@@ -44,6 +46,7 @@ inline bool moves(Mode mode) {
 ///   FAULT               HOLD   ready
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
 ///                              3 or more skipped cycles since the last cycle on time
+///   HOLD, TRACK, BRAKE  HOLD   paused; the operator is silent (only where timeouts.control_s is set)
 ///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///

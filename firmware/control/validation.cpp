@@ -52,6 +52,11 @@ bool plausible(const OtherJoints& joints) {
   return true;
 }
 
+bool plausible(const Control& control) {
+  const auto command = static_cast<int>(control.command);
+  return command >= 0 && command <= 2 && control.speed_scale >= 0.0 && control.speed_scale <= 1.0;
+}
+
 bool sanitize(Target& target) {
   if (!plausible(target)) return false;
   target.orientation = target.tracks_orientation ? target.orientation.normalized() : Quaternion::Identity();

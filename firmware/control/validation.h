@@ -12,6 +12,7 @@ bool plausible(const ArmState& state, int joints);
 bool plausible(const Target& target);
 bool plausible(const Obstacle& obstacle);
 bool plausible(const OtherJoints& joints);
+bool plausible(const Control& control);  ///< a known command, a scale from 0 to 1
 
 /// Each returns false for an implausible value. Otherwise fields without meaning get neutral values: the orientation of
 /// a target that tracks none, the angular velocity of a sphere.

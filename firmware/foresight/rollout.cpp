@@ -53,6 +53,7 @@ bool is_at(const LinkPoses& poses, const Target& target) {
 Rollout::Rollout(const Model& model) : coarse_(model) {
   coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
   coarse_.settings.bridges_outliers = false;  // a lag beyond reach between measured and commanded arm is a jump
+  coarse_.settings.timeouts.control_s = 0.0;  // a forecast assumes full speed and no pause
   // A snapshot's obstacles are grown already and contain the static ones.
   ShieldSettings& shield = coarse_.settings.shield;
   if (!is_exact(coarse_.settings.obstacle_trust)) shield.rest_clearance_m = shield.hard_clearance_m;

@@ -197,7 +197,8 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
   if (movers.size() == 0) return true;
   const OtherFrames others = place_other_joints(model_.arm, from.others);
   const ForesightSettings& settings = model_.settings.foresight;
-  for (double after_s = 0.0; after_s <= settings.horizon_s; after_s += kSampleEvery_s) {
+  for (int sample = 0; sample * kSampleEvery_s <= settings.horizon_s; ++sample) {
+    const double after_s = sample * kSampleEvery_s;
     const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad, others);
     if (clearance_after(model_.arm, poses, movers.begin(), movers.size(), after_s, settings.clearance_m) <
         settings.clearance_m)
@@ -216,7 +217,7 @@ Guide TreePlanner::finish(const Snapshot& from) {
   int checks = 0;
   if (path.size() < 2 || !free_.contains_way(path[0], path[1], checks)) return {};
   for (const double pause_s : kPauses_s) {
-    const Guide guide = timed_guide(model_.arm, path, kLimitShare, from.now_s + pause_s,
+    Guide guide = timed_guide(model_.arm, path, kLimitShare, from.now_s + pause_s,
                                     [&](const JointVector& q_rad) { return free_.contains(q_rad); });
     if (guide.knots == 0 || guide.end_s() > from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s) return {};
     if (is_clear_of_movers(from, guide)) return guide;

@@ -79,6 +79,7 @@ Controller::Result result_of(const sidestep::Result& from) {
           static_cast<Controller::Mode>(report.mode),
           static_cast<int>(report.fault),
           report.limiting,
+          report.speed_scale,
           report.message,
           report.target_distance_m,
           report.clearance_m,
@@ -129,6 +130,7 @@ struct Controller::Inside {
   Newest<sidestep::ArmState> arm;
   Newest<sidestep::Target> target;
   Newest<ObstacleSet> obstacles;
+  Newest<sidestep::Control> control;
   bool stopping = false;
 };
 
@@ -168,6 +170,14 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
   return true;
 }
 
+bool Controller::set_control(const Control& control, double now_s) {
+  auto& newest = inside_->control;
+  *newest.draft = {0, control.paused ? ControlCommand::kPause : ControlCommand::kResume, control.speed_scale};
+  if (!inside_->gate.accept(*newest.draft, now_s)) return false;
+  newest.take_draft(now_s);
+  return true;
+}
+
 Controller::Result Controller::step(const ArmState& arm, double now_s) {
   sidestep::ArmState& state = *inside_->arm.draft;
   state.utime = std::llround(now_s * 1e6);
@@ -180,6 +190,7 @@ Controller::Result Controller::step(const ArmState& arm, double now_s) {
 Controller::Result Controller::step(double now_s) {
   Inside& in = *inside_;
   Inputs inputs{in.arm.latest(), in.target.latest(), in.obstacles.latest(), 0, in.stopping};
+  inputs.control = in.control.latest();
   inputs.guide = in.foresight_thread.latest();
   const sidestep::Result result = sidestep::step(in.model, in.state, inputs, now_s);
   in.state = result.next;

@@ -68,6 +68,14 @@ class __attribute__((visibility("default"))) Controller {
   /// Returns false and keeps the previous set when a number is implausible or there are too many obstacles.
   bool set_obstacles(const Obstacle* obstacles, int count, double now_s);
 
+  struct Control {
+    bool paused = false;       ///< the arm slows to rest and keeps avoiding obstacles
+    double speed_scale = 1.0;  ///< 0 to 1: of the speed with which the arm follows its target
+  };
+  /// Before the first call, and without timeouts.control_s: not paused, full speed. Returns false and keeps the
+  /// previous one when the scale is not from 0 to 1.
+  bool set_control(const Control& control, double now_s);
+
   struct ArmState {
     Joints position_rad{};
     Joints velocity_radps{};
@@ -91,6 +99,7 @@ class __attribute__((visibility("default"))) Controller {
     Mode mode = Mode::kWait;
     int fault = kFaultNone;
     int limiting = 0;              ///< bit set of Limiting: what limits the command in this cycle
+    double speed_scale = 1;        ///< of set_control(); 0 while paused
     const char* message = "";      ///< the reason for the mode, static text
     double target_distance_m = 0;  ///< NaN without a target
     double clearance_m = 0;        ///< surface to surface; NaN before the first obstacle set
@@ -104,7 +113,7 @@ class __attribute__((visibility("default"))) Controller {
   /// One cycle without a new arm state; after timeouts.arm_state_s without one the arm brakes.
   Result step(double now_s);
 
-  /// All following cycles brake the arm to rest and keep it there.
+  /// All following cycles brake the arm to rest and keep it there. For a stop that can be resumed: set_control().
   void stop();
 
  private:

@@ -29,6 +29,11 @@ def bar(value, full, width=30):
     return "#" * round(share * width) + "." * (width - round(share * width))
 
 
+def speed_text(status):
+    """The operator's speed; empty at full speed, and while paused: the message says so."""
+    return f"at {status.speed_scale:.0%} speed" if 0 < status.speed_scale < 1 else ""
+
+
 def foresight_text(status):
     """The foresight status; empty while the law needs no guide (DIRECT)."""
     if status.foresight == status.GUIDED:
@@ -90,7 +95,7 @@ def brief(status, ages_s):
     parts = [f"{wire.MODES.get(status.mode, status.mode):5}", f"target {target_text(status)}",
              f"clearance {clearance_text(status, ages_s)}", f"cycle {status.cycle_time * 1e6:.0f} us",
              self_text(status) if status.limiting & status.LIMITING_SELF else "",
-             f"fault: {fault_text(status)}" if status.fault else "", foresight_text(status), message_text(status)]
+             f"fault: {fault_text(status)}" if status.fault else "", foresight_text(status), speed_text(status), message_text(status)]
     return "  ".join(filter(None, parts))
 
 
@@ -109,7 +114,8 @@ def lines(latest, ages_s):
         return [stale]
     clearance = clearance_text(status, ages_s)
     obstacles = latest["OBSTACLES"].num_obstacles if "OBSTACLES" in latest else "none received"
-    mode = f"{wire.MODES.get(status.mode, status.mode)}   {foresight_text(status)}   {message_text(status)}"
+    mode = f"{wire.MODES.get(status.mode, status.mode)}   {foresight_text(status)}   {message_text(status)} " \
+           f"{speed_text(status)}"
     return [f"{stale}; last: {mode}" if stale else mode, "",
             f"to target  {target_text(status):>10}  {bar(status.target_distance, 1.0)}",
             f"clearance  {clearance:>10}" + (f"  {bar(status.clearance, 0.5)}  {nearest_text(status)}"

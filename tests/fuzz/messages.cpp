@@ -16,6 +16,7 @@ struct FuzzedInputs {
   ArmState arm;
   Target target;
   ObstacleSet obstacles;
+  Control control;
   double now_s = 0.0;
 };
 
@@ -30,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto inputs = std::make_unique<FuzzedInputs>();  // kept, so that messages follow each other as in a run
   if (size == 0) return 0;
   inputs->now_s += 0.01;
-  const uint8_t channel = data[0] % 4;
+  const uint8_t channel = data[0] % 5;
   ++data, --size;
   if (channel == 0 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->arm)) require_arm(inputs->arm);
   if (channel == 1 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->target))
@@ -38,5 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (channel == 2 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->obstacles))
     fuzz::require_plausible(inputs->obstacles);
   if (channel == 3 && inputs->iiwa.receive(data, size, inputs->now_s, inputs->arm)) require_arm(inputs->arm);
+  if (channel == 4 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->control))
+    require(plausible(inputs->control));
   return 0;
 }

@@ -74,6 +74,21 @@ void the_arm_arrives_with_foresight_on_a_thread(void**) {
   check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
 }
 
+void an_arm_is_paused_resumed_and_slowed(void**) {
+  Loop loop;
+  loop.run(1.0);
+  assert_true(loop.controller.set_control({true, 1.0}, loop.now_s));
+  loop.run(0.5);
+  assert_true(loop.last.mode == Controller::Mode::kHold && loop.reports("paused"));
+  check_near(loop.last.speed_scale, 0.0, 0.0);
+  assert_true(loop.controller.set_control({false, 0.5}, loop.now_s));
+  loop.run(2.0);
+  assert_true(loop.last.mode == Controller::Mode::kTrack);
+  check_near(loop.last.speed_scale, 0.5, 0.0);
+  check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
+  for (const double scale : {-0.1, 1.1, std::nan("")}) assert_false(loop.controller.set_control({false, scale}, 9.0));
+}
+
 void the_arm_keeps_clear_of_all_three_shapes(void**) {
   for (const auto shape : {Controller::Shape::kSphere, Controller::Shape::kCapsule, Controller::Shape::kBox}) {
     Loop loop;
@@ -181,6 +196,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_library_commands_the_same_as_step),
       cmocka_unit_test(the_arm_arrives_with_foresight_on_a_thread),
+      cmocka_unit_test(an_arm_is_paused_resumed_and_slowed),
       cmocka_unit_test(the_arm_keeps_clear_of_all_three_shapes),
       cmocka_unit_test(a_pose_is_tracked),
       cmocka_unit_test(invalid_inputs_are_rejected_and_the_last_valid_ones_are_used),

@@ -34,6 +34,8 @@ Inputs ClosedLoop::receive() {
   if (sends_obstacles) sent_obstacles_.send(*obstacles, now_s());
   if (sends_others) sent_others_.send(others, now_s());
   Inputs inputs{sent_arm_.latest, sent_target_.latest, sent_obstacles_.latest, skipped, stop};
+  if (sends_control) sent_control_.send(control, now_s());
+  inputs.control = sent_control_.latest;
   inputs.other_joints = sent_others_.latest;
   return inputs;
 }

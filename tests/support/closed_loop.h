@@ -28,6 +28,8 @@ class ClosedLoop {
   OtherJoints others;  ///< of the joints outside the chain; at first as configured
   bool sends_arm_state = true, sends_target = false, sends_obstacles = true,
        sends_others = false;  ///< which messages are sent
+  Control control;            ///< of the operator
+  bool sends_control = false;
   bool stop = false;
   int skipped = 0;
   int64_t arm_clock_offset_us = 0;
@@ -65,6 +67,7 @@ class ClosedLoop {
   Sent<Target> sent_target_;
   Sent<ObstacleSet> sent_obstacles_;
   Sent<OtherJoints> sent_others_;
+  Sent<Control> sent_control_;
 };
 
 /// The LWA3 at home without obstacles, with a target 20 cm away that is not sent yet.

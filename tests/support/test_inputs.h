@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware/io/lcm/network_inputs.h"
+#include "firmware/model/arm.h"
 
 namespace sidestep::test {
 
@@ -26,6 +27,9 @@ class TestInputs {
   }
   bool receive(const void* bytes, size_t size, double now_s, OtherJoints& value) {
     return receive_value(bytes, size, now_s, other_joints_, value);
+  }
+  bool receive(const void* bytes, size_t size, double now_s, Control& value) {
+    return receive_value(bytes, size, now_s, control_, value);
   }
   bool receive(const void* bytes, size_t size, double now_s, ObstacleSet& value) {
     return receive_part(0, bytes, size, now_s, value);
@@ -63,6 +67,7 @@ class TestInputs {
   Received<ArmState> arm_;
   Received<Target> target_;
   Received<OtherJoints> other_joints_;
+  Received<Control> control_;
   std::unique_ptr<Received<ObstacleSet>> obstacles_ = std::make_unique<Received<ObstacleSet>>();
 };
 

@@ -19,6 +19,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "host/tools"), str(ROOT / "host/view"), str(ROOT / "build/lcm/python")]
 import arm
+import control
 import crowds
 import geometry
 import record
@@ -212,6 +213,8 @@ def refusals():
                 (send_obstacles, ["--csv", short_row], 2, f"{short_row}, line 2: too few columns"),
                 (send_obstacles, ["--csv", thin], 2, f"{thin}, line 2: radius -1 is below 0"),
                 (send_obstacles, ["--csv", no_rows], 2, f"{no_rows}: no rows"),
+                (control, ["pause", "--speed", "1.5"], 2, "1.5 is not from 0 to 1"),
+                (control, ["halt"], 2, "invalid choice: 'halt'"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
                 (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "subscribe to '('"),
                 (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),
@@ -259,6 +262,9 @@ def watched_texts():
     for clearance_m, text in ((0.1234, "0.123 m"), (math.inf, "no obstacles"), (math.nan, "unknown, no obstacles")):
         status.clearance = clearance_m
         assert watch.clearance_text(status, {}).startswith(text)
+    for scale, text in ((1.0, ""), (0.25, "at 25% speed"), (0.0, "")):
+        status.speed_scale = scale
+        assert watch.speed_text(status) == text and text in watch.brief(status, {})
     status.nearest_link = "hand"
     for number, text in ((-1, ""), (7, "hand and obstacle 7"), (-3, "hand and surroundings[1]"),
                          (-20004, "hand and link 4 of another arm")):

@@ -28,6 +28,7 @@ struct Inputs {
   bool stop = false;                     ///< the process has been asked to end: brake
   double foreign_command_s = -HUGE_VAL;  ///< when another controller's command for this arm was last received
   const Guide* guide = nullptr;          ///< from foresight; null without foresight
+  Latest<Control> control{};             ///< without: full speed
   Latest<OtherJoints> other_joints{};    ///< positions of all joints outside the chain; without: Arm::other_positions
 };
 

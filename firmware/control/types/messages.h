@@ -28,6 +28,14 @@ struct Target {
   Vector3 angular_velocity_radps = Vector3::Zero();
 };
 
+/// What an operator asks for.
+enum class ControlCommand : int8_t { kPause = 0, kResume = 1, kStop = 2 };  // values as in control_t
+struct Control {
+  int64_t utime = 0;
+  ControlCommand command = ControlCommand::kResume;
+  double speed_scale = 1.0;  ///< 0 to 1, of the nominal velocity in TRACK
+};
+
 /// The output of a cycle. position_rad is the last commanded position + velocity_radps * period; while the command
 /// closes a large following error, a correction is added to it (command_stream.h).
 struct Command {

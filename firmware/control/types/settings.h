@@ -78,6 +78,7 @@ struct Timeouts {
   double arm_state_s = 0.030;       ///< then mode BRAKE
   double arm_state_lost_s = 0.100;  ///< then mode FAULT
   double consistent_s = 0.5;        ///< duration of consistent arm states that is required before the arm moves
+  double control_s = 0.0;           ///< then mode HOLD; 0: no operator is needed
   double coast_s = 0.3;  ///< how long a jumped, shrunk or vanished obstacle is remembered (obstacle_memory.h)
 };
 

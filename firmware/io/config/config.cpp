@@ -111,6 +111,7 @@ void read_timeouts(YamlSection section, Timeouts& timeouts) {
   section.number("arm_state_s", timeouts.arm_state_s, {0.005, 0.5});
   section.number("arm_state_lost_s", timeouts.arm_state_lost_s, {0.005, 1.0});
   section.number("consistent_s", timeouts.consistent_s, {0.1, 10.0});
+  section.number("control_s", timeouts.control_s, {0.0, 10.0});
   section.number("coast_s", timeouts.coast_s, {0.0, 10.0});
   if (timeouts.arm_state_lost_s < timeouts.arm_state_s)
     section.fail("arm_state_lost_s", "must not be below arm_state_s");
@@ -141,11 +142,14 @@ void read_obstacles(YamlSection obstacles, Settings& settings) {
 void check_channels_are_unique(const YamlSection& root, const Config& config) {
   const Channels& channels = config.channels;
   const Neighbours& neighbours = config.neighbours;
-  std::vector<std::pair<std::string, std::string>> names = {
-      {"channels.target", channels.target},           {"channels.obstacles", channels.obstacles},
-      {"channels.arm_state", channels.arm_state},     {"channels.other_joints", channels.other_joints},
-      {"channels.arm_command", channels.arm_command}, {"channels.controller_status", channels.controller_status},
-      {"channels.loop_timing", channels.loop_timing}};
+  std::vector<std::pair<std::string, std::string>> names = {{"channels.target", channels.target},
+                                                            {"channels.obstacles", channels.obstacles},
+                                                            {"channels.arm_state", channels.arm_state},
+                                                            {"channels.other_joints", channels.other_joints},
+                                                            {"channels.control", channels.control},
+                                                            {"channels.arm_command", channels.arm_command},
+                                                            {"channels.controller_status", channels.controller_status},
+                                                            {"channels.loop_timing", channels.loop_timing}};
   if (!neighbours.publish.empty()) names.emplace_back("neighbours.publish", neighbours.publish);
   for (const std::string& channel : neighbours.listen) names.emplace_back("neighbours.listen", channel);
   std::map<std::string, std::string> used;

@@ -96,6 +96,7 @@ Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   message.self_clearance = report.nearest_links.distance_m;
   copy_link(report.nearest_links.first, message.self_links[0]);
   copy_link(report.nearest_links.second, message.self_links[1]);
+  message.speed_scale = report.speed_scale;
   if (*record.rejected_reason) message.message.append("; rejected: ").append(record.rejected_reason);
   return messages_->buffer.encode(message);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sidestep/control_t.hpp>
 #include <sidestep/named_joints_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
@@ -16,6 +17,9 @@ static_assert(static_cast<int8_t>(Shape::kSphere) == obstacle_t::SPHERE);
 static_assert(static_cast<int8_t>(Shape::kCapsule) == obstacle_t::CAPSULE);
 static_assert(static_cast<int8_t>(Shape::kBox) == obstacle_t::BOX);
 static_assert(static_cast<int8_t>(Shape::kCylinder) == obstacle_t::CYLINDER);
+static_assert(static_cast<int8_t>(ControlCommand::kPause) == control_t::PAUSE);
+static_assert(static_cast<int8_t>(ControlCommand::kResume) == control_t::RESUME);
+static_assert(static_cast<int8_t>(ControlCommand::kStop) == control_t::STOP);
 static_assert(static_cast<int8_t>(Kind::kThing) == obstacle_t::THING);
 static_assert(static_cast<int8_t>(Kind::kPerson) == obstacle_t::PERSON);
 
@@ -94,6 +98,16 @@ const char* MessageDecoder::decode(Packet packet, Target& target) {
   target.tracks_orientation = message.tracks_orientation != 0;
   target.orientation = quaternion(message.quaternion);
   target.angular_velocity_radps = vector(message.angular_velocity);
+  return nullptr;
+}
+
+const char* MessageDecoder::decode(Packet packet, Control& control) {
+  if (!has_fingerprint<control_t>(packet)) return "control of another type";
+  control_t message;
+  if (packet.size != kFingerprintBytes + static_cast<size_t>(message._getEncodedSizeNoHash()))
+    return "control of wrong size";
+  if (message.decode(packet.bytes, 0, static_cast<int>(packet.size)) < 0) return "control that does not decode";
+  control = {message.utime, static_cast<ControlCommand>(message.command), message.speed_scale};
   return nullptr;
 }
 

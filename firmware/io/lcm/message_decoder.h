@@ -27,6 +27,7 @@ class MessageDecoder {
   /// value undefined.
   const char* decode(Packet packet, ArmState& arm);
   const char* decode(Packet packet, Target& target);
+  const char* decode(Packet packet, Control& control);
   const char* decode(Packet packet, ObstacleSet& obstacles, int64_t& utime);
   /// Fills the positions of the named joints. Joints that the arm does not know are skipped: a sender may report all
   /// joints of a robot. A message that names none of the arm's is wrong.

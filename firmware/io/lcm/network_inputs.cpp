@@ -51,6 +51,10 @@ bool NetworkInputs::receive(Packet packet, double now_s, Received<OtherJoints>& 
   return receive_value(packet, now_s, received);
 }
 
+bool NetworkInputs::receive(Packet packet, double now_s, Received<Control>& received) {
+  return receive_value(packet, now_s, received);
+}
+
 bool NetworkInputs::receive_obstacles(size_t part, Packet packet, double now_s, Received<ObstacleSet>& received) {
   ObstacleMerger* merger = parts_->merger.get();
   ObstacleSet& set = merger ? merger->draft(part) : received.message;

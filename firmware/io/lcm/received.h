@@ -29,6 +29,7 @@ struct LatestInputs {
   const Received<Target>& target;
   const Received<ObstacleSet>& obstacles;
   const Received<OtherJoints>& other_joints;
+  const Received<Control>& control;
 };
 
 }  // namespace sidestep

@@ -117,6 +117,9 @@ void Wire::on_obstacles(PacketHandler handler) {
 void Wire::on_other_joints(PacketHandler handler) {
   network_->subscribe(network_->channels.other_joints, std::move(handler));
 }
+void Wire::on_control(PacketHandler handler) {
+  network_->subscribe(network_->channels.control, std::move(handler));
+}
 void Wire::on_neighbour(size_t k, PacketHandler handler) {
   network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }

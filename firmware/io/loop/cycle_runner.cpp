@@ -35,6 +35,11 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
     arguments.other_joints = latest.other_joints.message;
     arguments.inputs.other_joints.message = &arguments.other_joints;
   }
+  if (latest.control.count > 0) {
+    arguments.inputs.control = latest.control.latest();
+    arguments.control = latest.control.message;
+    arguments.inputs.control.message = &arguments.control;
+  }
   if (const Guide* guide = foresight_thread_.latest()) {
     arguments.guide = *guide;
     arguments.inputs.guide = &arguments.guide;

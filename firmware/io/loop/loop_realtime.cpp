@@ -23,11 +23,12 @@ constexpr double kLongestBraking_s = 5.0;
 /// The receiving thread: passes the newest accepted message of each kind to the loop through a triple buffer.
 class Receiver {
  public:
-  Receiver(Wire& wire, const Config& config)
+  Receiver(Wire& wire, const Config& config, Requests& requests)
       : wire_(wire), inputs_(config.model.settings, config.model.arm, *config.dialect, config.neighbours, false) {
     wire.on_arm_state([this](Packet packet) { receive(arm, packet); });
     wire.on_target([this](Packet packet) { receive(target, packet); });
     wire.on_other_joints([this](Packet packet) { receive(other_joints, packet); });
+    wire.on_control([this, &requests](Packet packet) { receive_control(packet, requests); });
     wire.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
       wire.on_neighbour(k, [this, k](Packet packet) { receive_obstacles(k + 1, packet); });
@@ -46,6 +47,7 @@ class Receiver {
   TripleBuffer<Received<Target>> target;
   TripleBuffer<Received<ObstacleSet>> obstacles;
   TripleBuffer<Received<OtherJoints>> other_joints;
+  TripleBuffer<Received<Control>> control;
   std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
@@ -56,6 +58,12 @@ class Receiver {
   void receive(TripleBuffer<Received<Message>>& buffer, Packet packet) {
     const bool accepted = inputs_.receive(packet, wire_.received_s(), buffer.draft());
     publish(accepted, buffer);
+  }
+
+  void receive_control(Packet packet, Requests& requests) {
+    const bool accepted = inputs_.receive(packet, wire_.received_s(), control.draft());
+    if (accepted && control.draft().message.command == ControlCommand::kStop) requests.stop = true;
+    publish(accepted, control);
   }
 
   void receive_obstacles(size_t part, Packet packet) {
@@ -105,11 +113,11 @@ class Loop {
  private:
   void cycle(double now_s, double late_s, int skipped, bool stop) {
     const LatestInputs latest{receiver_.arm.latest(), receiver_.target.latest(), receiver_.obstacles.latest(),
-                              receiver_.other_joints.latest()};
+                              receiver_.other_joints.latest(), receiver_.control.latest()};
     CycleRunner::CycleTrigger trigger;
     // A message received after waking and before this line counts as received now.
     trigger.now_s = std::max({now_s, latest.arm.received_s, latest.target.received_s, latest.obstacles.received_s,
-                              latest.other_joints.received_s});
+                              latest.other_joints.received_s, latest.control.received_s});
     trigger.utime = static_cast<int64_t>(trigger.now_s * 1e6);
     trigger.skipped_cycles = skipped;
     trigger.wake_latency_s = late_s;
@@ -148,7 +156,7 @@ LoopSummary run_realtime(const Config& config, const std::string& lcm_url, Reque
   use_fifo(kReceivePriority, why_not);
 
   Wire wire(lcm_url, config.wire());
-  const auto receiver = std::make_unique<Receiver>(wire, config);
+  const auto receiver = std::make_unique<Receiver>(wire, config, requests);
   CycleRunner runner(config, wire, blackbox, foresight_thread, false, degraded);
   std::atomic<bool> end{false};
   std::thread receiving([&] { receiver->run(end); });

@@ -76,7 +76,7 @@ void a_guide_waits_for_an_arm_that_cannot_follow(void**) {
     const double before_s = at_s - progress.delay_s;
     JointVector q_rad = point_of(guide, before_s).position_rad;
     q_rad[2] += deviation_rad;
-    return guide_time_s(lwa3(), guide, q_rad, at_s, period_s, progress) - before_s + period_s;
+    return guide_time_s(lwa3(), guide, q_rad, at_s, period_s, period_s, progress) - before_s + period_s;
   };
   for (const auto& [deviation_rad, rate] : {std::pair{0.0, 1.0}, {0.05, 1.0}, {0.125, 0.5}, {0.2, 0.1}, {3.0, 0.1}}) {
     GuideProgress progress{guide.time_s[0], 0.3};
@@ -84,8 +84,10 @@ void a_guide_waits_for_an_arm_that_cannot_follow(void**) {
     check_near(progress.delay_s, 0.3 + (1.0 - rate) * period_s, 1e-9);
   }
   GuideProgress of_another{guide.time_s[0] - 1.0, 0.3};
-  guide_time_s(lwa3(), guide, point_of(guide, at_s).position_rad, at_s, period_s, of_another);
+  guide_time_s(lwa3(), guide, point_of(guide, at_s).position_rad, at_s, period_s, period_s, of_another);
   check_near(of_another.delay_s, 0.0, 0.0);
+  guide_time_s(lwa3(), guide, point_of(guide, at_s).position_rad, at_s, period_s, 0.3 * period_s, of_another);
+  check_near(of_another.delay_s, 0.7 * period_s, 1e-12);  // an operator's speed
 }
 
 void after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there(void**) {

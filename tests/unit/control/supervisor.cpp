@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr int kFlags = 13;
+constexpr int kFlags = 15;
 static_assert(sizeof(InputStatus) == kFlags, "a new flag belongs into status_of()");
 const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
 
@@ -28,6 +28,8 @@ InputStatus status_of(unsigned bits) {
                              &status.target_fresh,
                              &status.late,
                              &status.stop,
+                             &status.paused,
+                             &status.operator_silent,
                              &status.foreign_command};
   for (int i = 0; i < kFlags; ++i) *all[i] = bits >> i & 1;
   return status;
@@ -65,8 +67,9 @@ bool may_move(Mode mode) {
 
 void tracking_needs_everything_fresh(void**) {
   check_always("track", [](const auto&, const InputStatus& f, const auto& next) {
-    return next.mode != Mode::kTrack || (f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
-                                         f.target_known && f.target_fresh && !f.late && !f.stop && !f.foreign_command);
+    return next.mode != Mode::kTrack ||
+           (f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh && f.target_known &&
+            f.target_fresh && !f.late && !f.stop && !f.foreign_command && !f.paused && !f.operator_silent);
   });
 }
 
@@ -140,12 +143,13 @@ void every_reason_to_brake_leads_to_brake(void**) {
   });
 }
 
-void without_a_fresh_target_the_mode_is_hold(void**) {
+void without_a_fresh_target_or_an_operators_consent_the_mode_is_hold(void**) {
   check_always("hold", [](const Supervision& last, const InputStatus& f, const auto& next) {
     const bool undisturbed = f.arm_known && f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh &&
                              !f.late && !f.stop && !f.foreign_command;
     if (last.mode == Mode::kWait || last.mode == Mode::kFault || !undisturbed) return true;
-    return next.mode == (f.target_known && f.target_fresh ? Mode::kTrack : Mode::kHold);
+    const bool tracks = f.target_known && f.target_fresh && !f.paused && !f.operator_silent;
+    return next.mode == (tracks ? Mode::kTrack : Mode::kHold);
   });
 }
 
@@ -165,7 +169,7 @@ void every_mode_is_reachable_and_has_a_message(void**) {
     return next.message && *next.message && std::string(next.message) != "before";
   });
   assert_int_equal(reached.size(), 5);
-  check(messages.size() >= 15, "%zu messages", messages.size());
+  check(messages.size() >= 17, "%zu messages", messages.size());
 }
 
 void an_ordinary_run_passes_through_the_expected_modes(void**) {
@@ -228,7 +232,7 @@ int main() {
       cmocka_unit_test(a_fault_lasts_until_the_arm_is_consistent_and_the_obstacles_fresh),
       cmocka_unit_test(a_fault_is_named_exactly_in_mode_fault),
       cmocka_unit_test(every_reason_to_brake_leads_to_brake),
-      cmocka_unit_test(without_a_fresh_target_the_mode_is_hold),
+      cmocka_unit_test(without_a_fresh_target_or_an_operators_consent_the_mode_is_hold),
       cmocka_unit_test(a_running_controller_waits_again_only_after_a_fault_without_obstacles),
       cmocka_unit_test(every_mode_is_reachable_and_has_a_message),
       cmocka_unit_test(an_ordinary_run_passes_through_the_expected_modes),

@@ -44,6 +44,7 @@ struct RecordedRun {
   Received<ArmState> arm;
   Received<Target> target;
   Received<OtherJoints> other_joints;
+  Received<Control> control;
   std::unique_ptr<Received<ObstacleSet>> obstacles = std::make_unique<Received<ObstacleSet>>();
   State state;
   ArmState now{0, test::home_rad(), JointVector::Zero(7)};  ///< follows the commands
@@ -94,7 +95,7 @@ struct RecordedRun {
     const Packet status = encoder.encode(recorded.report, recorded.record);
     statuses.emplace_back(status.bytes, status.bytes + status.size);
     const int64_t before = test::allocation_count();
-    blackbox->record({arm, target, *obstacles, other_joints}, recorded);
+    blackbox->record({arm, target, *obstacles, other_joints, control}, recorded);
     assert_int_equal(test::allocation_count() - before, 0);
   }
 

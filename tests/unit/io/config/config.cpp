@@ -115,6 +115,7 @@ const Key kNumbers[] = {
     {"timeouts", "arm_state_s", 0.05, [](const Config& c) { return c.model.settings.timeouts.arm_state_s; }},
     {"timeouts", "arm_state_lost_s", 0.5, [](const Config& c) { return c.model.settings.timeouts.arm_state_lost_s; }},
     {"timeouts", "consistent_s", 1.5, [](const Config& c) { return c.model.settings.timeouts.consistent_s; }},
+    {"timeouts", "control_s", 0.25, [](const Config& c) { return c.model.settings.timeouts.control_s; }},
     {"obstacles", "speed_bound_mps", 1.5, [](const Config& c) { return c.model.settings.obstacle_speed_bound_mps; }},
     {"limits", "velocity_radps", 1.5, [](const Config& c) { return c.model.arm.limits.velocity_radps[6]; }},
     {"limits", "acceleration_radps2", 1.5, [](const Config& c) { return c.model.arm.limits.acceleration_radps2[6]; }},
@@ -187,12 +188,12 @@ void each_text_and_flag_sets_its_field(void**) {
   const Channels channels =
       load(
           "channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F, "
-          "other_joints: G}")
+          "other_joints: G, control: H}")
           .channels;
   assert_string_equal((channels.target + channels.obstacles + channels.arm_state + channels.arm_command +
-                       channels.controller_status + channels.loop_timing + channels.other_joints)
+                       channels.controller_status + channels.loop_timing + channels.other_joints + channels.control)
                           .c_str(),
-                      "ABCDEFG");
+                      "ABCDEFGH");
   const Neighbours neighbours =
       load("neighbours: {publish: A, listen: [B, C], base_position_m: [1, 2, 3], base_rpy_rad: [0, 0, 1.5]}")
           .neighbours;

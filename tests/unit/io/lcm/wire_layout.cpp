@@ -1,3 +1,4 @@
+#include <sidestep/control_t.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/joint_state_t.hpp>
@@ -104,6 +105,10 @@ Fingerprint joint_command() {
       .add("joint_velocity", "double", {"num_joints"});
 }
 
+Fingerprint control() {
+  return Fingerprint().add("utime", "int64_t").add("command", "int8_t").add("speed_scale", "double");
+}
+
 Fingerprint controller_status() {
   Fingerprint f;
   f.add("utime", "int64_t")
@@ -118,7 +123,7 @@ Fingerprint controller_status() {
   f.add("cycle_time", "double").add("wake_latency", "double");
   f.add("skipped_cycles", "int64_t").add("rejected_messages", "int64_t").add("message", "string");
   f.add("foresight", "int8_t").add("guide_horizon", "double").add("guide_tool", "double", {"8", "3"});
-  f.add("self_clearance", "double").add("self_links", "string", {"2"});
+  f.add("self_clearance", "double").add("self_links", "string", {"2"}).add("speed_scale", "double");
   return f;
 }
 
@@ -137,8 +142,9 @@ void layouts_have_the_published_fingerprints(void**) {
       {"joint_state_t", sidestep::joint_state_t::getHash(), joint_state().value(), 0x1806be37545e7d3f},
       {"named_joints_t", sidestep::named_joints_t::getHash(), named_joints().value(), 0xb369b291b5836948},
       {"joint_command_t", sidestep::joint_command_t::getHash(), joint_command().value(), 0xbc0ffe2927412bea},
+      {"control_t", sidestep::control_t::getHash(), control().value(), 0x7686d491d38e67bc},
       {"controller_status_t", sidestep::controller_status_t::getHash(), controller_status().value(),
-       0xaba3e2c3546e3a7d},
+       0xef5f88d512318560},
   };
   for (const auto& type : types) {
     const auto generated = static_cast<uint64_t>(type.generated);
