@@ -54,6 +54,7 @@ obstacle_t message_of(const Obstacle& obstacle) {
   copy(obstacle.solid.size_m, message.size);
   copy(obstacle.motion.velocity_mps, message.velocity);
   copy(obstacle.motion.angular_velocity_radps, message.angular_velocity);
+  message.kind = obstacle.is_person ? obstacle_t::PERSON : obstacle_t::THING;
   return message;
 }
 

@@ -26,6 +26,7 @@ struct Obstacle {
   int32_t id = 0;
   Solid solid;
   Motion motion;
+  bool is_person = false;
 };
 
 struct Target {

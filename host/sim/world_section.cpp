@@ -77,6 +77,9 @@ std::vector<Obstacle> read_obstacles(YamlSection& scenario) {
     if (!ids.insert(obstacle.id).second) section.fail("id", "used twice");
     obstacle.solid = solid_of(read_shape(section));
     obstacle.motion = read_motion(section);
+    std::string kind = "thing";
+    section.choice("kind", kind, {"thing", "person"});
+    obstacle.is_person = kind == "person";
     section.finish();
     obstacles.push_back(obstacle);
   }

@@ -23,7 +23,8 @@ PAGES = [runs.ROOT / "README.md", runs.ROOT / "docs/results.md"]
 PICTURES = {runs.ROOT / f"host/scenarios/{name}.png": name for name in ("closing-gap", "paper-c")}
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
-            "panda-crossing": " (Franka Panda)"}
+            "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
+            "shelf-with-a-visitor": " (Franka Panda)"}
 PLANNED = "planned"  # the paper's law with the other reading of its tool velocity
 BLOCK = re.compile(r"(<!-- make docs: ([\w-]+) -->\n)(.*?)(<!-- end -->)", re.S)
 

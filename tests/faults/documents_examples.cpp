@@ -4,7 +4,8 @@ namespace {
 
 void the_documents_have_the_results_of_the_example_scenes(void**) {
   sidestep::test::check_documents({"parked-obstacle", "closing-gap", "pillar", "two-people", "moving-shelf", "table",
-                                   "iiwa-crossing", "panda-crossing"});
+                                   "iiwa-crossing", "panda-crossing", "shelf-pick", "under-table",
+                                   "shelf-with-a-visitor"});
 }
 
 }  // namespace

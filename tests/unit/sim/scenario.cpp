@@ -25,7 +25,7 @@ target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0,
 obstacles:
   - {id: 4, shape: box, edges_m: [0.1, 0.2, 0.3], position_m: [0, 0, 1], velocity_mps: [0, 0, 0], quaternion: [1, 0, 0, 0]}
   - {id: 9, shape: capsule, radius_m: 0.1, length_m: 0.5, position_m: [0, 1, 1], velocity_mps: [0, 0, -1]}
-  - {id: 11, shape: cylinder, radius_m: 0.04, height_m: 0.2, position_m: [1, 1, 1], velocity_mps: [0, 0, 0]}
+  - {id: 11, shape: cylinder, radius_m: 0.04, height_m: 0.2, position_m: [1, 1, 1], velocity_mps: [0, 0, 0], kind: person}
 expect: {final_distance_max_m: 0.01, clearance_min_m: 0.02}
 published: {axis_distance_m: 0.2}
 )";
@@ -70,6 +70,7 @@ void every_value_of_a_scenario_is_read(void**) {
   assert_int_equal(box.id, 4);
   check_near(box.solid.size_m, Vector3d(0.1, 0.2, 0.3), 0);
   assert_true(capsule.solid.shape == Shape::kCapsule);
+  assert_true(cylinder.is_person && !capsule.is_person);
   check_near(capsule.solid.size_m, Vector3d(0.1, 0.5, 0), 0);
   check_near(capsule.motion.velocity_mps, Vector3d(0, 0, -1), 0);
   assert_true(cylinder.solid.shape == Shape::kCylinder);
