@@ -218,7 +218,7 @@ Guide TreePlanner::finish(const Snapshot& from) {
   if (path.size() < 2 || !free_.contains_way(path[0], path[1], checks)) return {};
   for (const double pause_s : kPauses_s) {
     Guide guide = timed_guide(model_.arm, path, kLimitShare, from.now_s + pause_s,
-                                    [&](const JointVector& q_rad) { return free_.contains(q_rad); });
+                              [&](const JointVector& q_rad) { return free_.contains(q_rad); });
     if (guide.knots == 0 || guide.end_s() > from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s) return {};
     if (is_clear_of_movers(from, guide)) return guide;
   }

@@ -23,6 +23,14 @@ Guide random_guide(Random& random, int knots) {
   return guide;
 }
 
+/// The velocity is the slope of the position.
+void check_slope(const Guide& guide, double at_s) {
+  const double h_s = 1e-6;
+  const JointVector slope =
+      (point_of(guide, at_s + h_s).position_rad - point_of(guide, at_s - h_s).position_rad) / (2.0 * h_s);
+  check_near_because(point_of(guide, at_s).velocity_radps, slope, 1e-4, "at %g s", at_s);
+}
+
 void a_guide_rests_in_its_knots_and_before_and_after(void**) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
@@ -42,10 +50,7 @@ void the_velocity_of_a_guide_is_the_slope_of_its_position(void**) {
   Random random(2);
   for (int trial = 0; trial < 200; ++trial) {
     const Guide guide = random_guide(random, 3);
-    const double at_s = random.uniform(0.9, guide.end_s() + 0.1), h_s = 1e-6;
-    const JointVector slope =
-        (point_of(guide, at_s + h_s).position_rad - point_of(guide, at_s - h_s).position_rad) / (2.0 * h_s);
-    check_near_because(point_of(guide, at_s).velocity_radps, slope, 1e-4, "trial %d at %g s", trial, at_s);
+    check_slope(guide, random.uniform(0.9, guide.end_s() + 0.1));
   }
 }
 
@@ -61,10 +66,7 @@ void a_guide_passes_its_knots_at_their_velocities(void**) {
         check_near(point_of(guide, at_s).velocity_radps, guide.velocity_radps[k], 1e-4);
       }
     }
-    const double at_s = random.uniform(0.9, guide.end_s() + 0.1), step_s = 1e-6;
-    const JointVector slope =
-        (point_of(guide, at_s + step_s).position_rad - point_of(guide, at_s - step_s).position_rad) / (2.0 * step_s);
-    check_near_because(point_of(guide, at_s).velocity_radps, slope, 1e-4, "trial %d at %g s", trial, at_s);
+    check_slope(guide, random.uniform(0.9, guide.end_s() + 0.1));
   }
 }
 
