@@ -59,6 +59,7 @@ Obstacle obstacle_of(const Controller::Obstacle& from) {
   to.id = from.id;
   to.velocity_mps = vector(from.velocity_mps);
   to.angular_velocity_radps = vector(from.angular_velocity_radps);
+  to.kind = from.is_person ? Kind::kPerson : Kind::kThing;
   return to;
 }
 

@@ -63,6 +63,7 @@ class __attribute__((visibility("default"))) Controller {
                       ///< height}; box {edge, edge, edge}
     Vector velocity_mps{};
     Vector angular_velocity_radps{};
+    bool is_person = false;  ///< keeps the full clearance also at rest
   };
   /// An obstacle that is missing in the new set is remembered for timeouts.coast_s and extrapolated with its velocity.
   /// Returns false and keeps the previous set when a number is implausible or there are too many obstacles.

@@ -91,8 +91,11 @@ def walking(y_m=0.9, reach_m=1.2):
     """A person who walks back and forth along x past the arm, with swinging arms and legs: five capsules and a head."""
     def at(t):
         x, vx = reach_m * math.sin(WALK_RADPS * t), reach_m * WALK_RADPS * math.cos(WALK_RADPS * t)
-        return [limb(i, x, vx, y_m, t, *one) for i, one in enumerate(LIMBS)] + \
-               [sphere(len(LIMBS), x, y_m, HEAD_UP_M, HEAD_M, vx)]
+        parts = [limb(i, x, vx, y_m, t, *one) for i, one in enumerate(LIMBS)] + \
+                [sphere(len(LIMBS), x, y_m, HEAD_UP_M, HEAD_M, vx)]
+        for part in parts:
+            part.kind = obstacle_t.PERSON
+        return parts
     return at
 
 

@@ -104,6 +104,19 @@ void the_arm_keeps_clear_of_all_three_shapes(void**) {
   }
 }
 
+/// A target inside the obstacle: the arm stops where it must.
+void a_person_at_rest_is_kept_farther_away_than_a_thing(void**) {
+  const auto least_clearance_m = [](bool is_person) {
+    Loop loop;
+    loop.sphere.position_m = {loop.target.position_m[0], loop.target.position_m[1], loop.target.position_m[2]};
+    loop.sphere.is_person = is_person;
+    loop.run(3.0);
+    return loop.last.clearance_m;
+  };
+  const double thing_m = least_clearance_m(false), person_m = least_clearance_m(true);
+  check(thing_m > 0.003 && thing_m < 0.012 && person_m > 0.018, "%g m and %g m", thing_m, person_m);
+}
+
 void a_pose_is_tracked(void**) {
   Loop loop;
   loop.target.tracks_orientation = true;
@@ -198,6 +211,7 @@ int main() {
       cmocka_unit_test(the_arm_arrives_with_foresight_on_a_thread),
       cmocka_unit_test(an_arm_is_paused_resumed_and_slowed),
       cmocka_unit_test(the_arm_keeps_clear_of_all_three_shapes),
+      cmocka_unit_test(a_person_at_rest_is_kept_farther_away_than_a_thing),
       cmocka_unit_test(a_pose_is_tracked),
       cmocka_unit_test(invalid_inputs_are_rejected_and_the_last_valid_ones_are_used),
       cmocka_unit_test(a_configuration_with_neighbours_is_rejected),

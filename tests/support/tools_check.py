@@ -47,6 +47,7 @@ def velocities():
     for motion in motions:
         for t in (0.0, 1.3, 4.9):
             assert np.allclose(slope(lambda s: motion(s)[0], t), motion(t)[1], atol=1e-6), (motion, t)
+    assert {part.kind for part in crowds.walking()(0.0)} == {wire.obstacle_t.PERSON}
     crowd_kinds = [crowds.straight([[0, 0, 0, 0.1, 1, 2, 3]]), crowds.wandering(4, 7), crowds.walking()]
     for crowd in crowd_kinds:
         for i, obstacle in enumerate(crowd(1.7)):
