@@ -123,7 +123,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
               Result& result) {
   State& next = result.next;
   const ArmState arm = present_arm(next, monitored.status);
-  const OtherFrames others = present_other_joints(model, inputs.other_joints, now_s);
+  const OtherFrames others = present_others(model, inputs, now_s);
   const LinkPoses poses = forward_kinematics(model.arm, arm.position_rad, others);
   probe.passed(Stage::kMonitor);
 

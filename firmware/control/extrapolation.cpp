@@ -16,10 +16,12 @@ ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obsta
           fresh ? 0.0 : by_speed_m - by_acceleration_m};
 }
 
-OtherFrames present_other_joints(const Model& model, const Latest<OtherJoints>& latest, double now_s) {
-  if (!latest.message) return model.arm.other_frames;
-  OtherFrames frames = place_other_joints(model.arm, *latest.message);
-  if (!latest.fresh(now_s, model.settings.timeouts.obstacles_s)) frames.velocity.fill(0.0);
+OtherFrames present_others(const Model& model, const Inputs& inputs, double now_s) {
+  const Latest<OtherJoints>& joints = inputs.other_joints;
+  OtherFrames frames = joints.message ? place_other_joints(model.arm, *joints.message) : model.arm.other_frames;
+  if (joints.message && !joints.fresh(now_s, model.settings.timeouts.obstacles_s)) frames.velocity.fill(0.0);
+  const Attachments* attachments = inputs.attachments.message;
+  if (attachments && !attachments->is_empty()) frames.attachments = attachments;
   return frames;
 }
 

@@ -13,9 +13,10 @@ namespace sidestep {
 /// view's possible_m. Surroundings do not grow.
 ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s);
 
-/// Where the joints outside the chain are: at the positions of the newest message, however old, else at
-/// Arm::other_positions. Their velocities are 0 once the message is older than timeouts.obstacles_s.
-OtherFrames present_other_joints(const Model& model, const Latest<OtherJoints>& latest, double now_s);
+/// What hangs on the chain. The joints outside it are at the positions of the newest message, however old, else at
+/// Arm::other_positions; their velocities are 0 once the message is older than timeouts.obstacles_s. The tool holds
+/// what the newest message tells, however old, which must outlive the result.
+OtherFrames present_others(const Model& model, const Inputs& inputs, double now_s);
 
 /// The target dt_s later, at its own linear and angular velocity.
 Target extrapolated(const Target& target, double dt_s);

@@ -14,14 +14,14 @@ Verdict rejected(const char* reason) {
 }  // namespace
 
 InputGate::InputGate(const Arm& arm, const Settings& settings, InputSource source)
-    : joints_(arm.joints),
+    : arm_(arm),
       timeouts_(settings.timeouts),
       source_(source),
       memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s),
       other_joints_(arm, settings.timeouts.obstacles_s) {}
 
 Verdict InputGate::accept(ArmState& arm, double now_s) {
-  if (!plausible(arm, joints_)) return rejected("arm state with impossible values");
+  if (!plausible(arm, arm_.joints)) return rejected("arm state with impossible values");
   if (!is_ordered()) return kAccepted;
   const double received_s = source_ == InputSource::kLockstep ? static_cast<double>(arm.utime) * 1e-6 : now_s;
   return {arm_order_.accept(arm.utime, received_s, timeouts_.arm_state_lost_s), nullptr};
@@ -44,6 +44,13 @@ Verdict InputGate::accept(OtherJoints& joints, double now_s) {
   if (!plausible(joints)) return rejected("other joints with impossible values");
   if (is_ordered() && !other_joints_order_.accept(joints.utime, now_s, timeouts_.obstacles_s)) return {};
   other_joints_.complete(joints);
+  return kAccepted;
+}
+
+Verdict InputGate::accept(Attachments& attachments, double now_s) {
+  if (!sanitize(attachments)) return rejected("attachments with impossible values");
+  if (is_ordered() && !attachments_order_.accept(attachments.utime, now_s, timeouts_.target_s)) return {};
+  place_held_shapes(arm_, attachments);
   return kAccepted;
 }
 

@@ -30,6 +30,7 @@ struct Verdict {
 /// not throw and does not allocate. Large: lives on the heap.
 class InputGate {
  public:
+  /// The arm outlives this.
   InputGate(const Arm& arm, const Settings& settings, InputSource source);
 
   /// Each may change the value: fields that do not apply become neutral, remembered obstacles are added. A value that
@@ -38,16 +39,18 @@ class InputGate {
   Verdict accept(Target& target, double now_s);
   Verdict accept(Control& control, double now_s);
   Verdict accept(ObstacleSet& obstacles, int64_t utime, double now_s);
+  /// Places the shapes on the last body of the arm.
+  Verdict accept(Attachments& attachments, double now_s);
   /// Completes the positions of the named joints by the last ones of the others, and adds velocities.
   Verdict accept(OtherJoints& joints, double now_s);
 
  private:
   bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
 
-  int joints_;
+  const Arm& arm_;
   Timeouts timeouts_;
   InputSource source_;
-  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_, control_order_;
+  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_, control_order_, attachments_order_;
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;
 };

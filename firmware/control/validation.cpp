@@ -73,6 +73,15 @@ bool sanitize(ObstacleSet& set) {
   return true;
 }
 
+bool sanitize(Attachments& attachments) {
+  for (Obstacle& shape : attachments.shapes) {
+    if (!plausible(shape)) return false;
+    shape.velocity_mps.setZero();
+    shape.angular_velocity_radps.setZero();
+  }
+  return true;
+}
+
 Obstacle reported_obstacle(Shape shape, const Vector3& centre, const Quaternion& orientation, const Vector3& size_m) {
   Obstacle invalid = sphere_obstacle(centre, std::nan(""));
   if (!size_m.allFinite()) return invalid;

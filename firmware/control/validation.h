@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/control/types/messages.h"
+#include "firmware/model/attachments.h"
 #include "firmware/model/other_joints.h"
 
 namespace sidestep {
@@ -18,6 +19,7 @@ bool plausible(const Control& control);  ///< a known command, a scale from 0 to
 /// a target that tracks none, the angular velocity of a sphere.
 bool sanitize(Target& target);
 bool sanitize(ObstacleSet& set);
+bool sanitize(Attachments& attachments);  ///< what is held has no velocity of its own
 
 /// Makes an obstacle at rest from the fields of a report; size_m as in obstacle_t. For an invalid shape, size or
 /// orientation the result is not plausible().

@@ -38,6 +38,7 @@ void Expectation::set(const Snapshot& from, const Forecast& forecast) {
   at_s_ = from.now_s;
   target_ = from.target;
   others_ = from.others;
+  attachments_ = from.attachments;
   nearby_.count = from.nearby.count;
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, nearby_.obstacles.begin());
   forecast_ = forecast;
@@ -75,8 +76,8 @@ bool Expectation::other_joints_as_expected(const Snapshot& now) const {
 bool Expectation::holds(const Snapshot& now) const {
   const double after_s = now.now_s - at_s_;
   return valid_ && now.tracking == tracking_ && after_s >= 0.0 && after_s <= kForecastPath_s &&
-         target_as_expected(now, after_s) && other_joints_as_expected(now) && arm_as_expected(now, after_s) &&
-         obstacles_as_expected(now, after_s);
+         target_as_expected(now, after_s) && other_joints_as_expected(now) && are_same(now.attachments, attachments_) &&
+         arm_as_expected(now, after_s) && obstacles_as_expected(now, after_s);
 }
 
 }  // namespace sidestep

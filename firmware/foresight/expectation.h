@@ -18,7 +18,7 @@ class Expectation {
   ///   obstacles   the same ones, each within 10 mm and 0.05 m/s of its extrapolation, of the same size within 10 mm
   ///   target      within 5 mm and 0.02 m/s of predicted_target(), the orientation within 0.03 rad
   ///   arm         every joint within 0.05 rad (times Arm::joint_scale) of the path, joints outside the chain within
-  ///               0.01 rad or m
+  ///               0.01 rad or m; what the tool holds and may touch is the same
   bool holds(const Snapshot& now) const;
 
  private:
@@ -33,6 +33,7 @@ class Expectation {
   double at_s_ = 0.0;
   Target target_;
   OtherJoints others_;
+  Attachments attachments_;
   NearbyObstacles nearby_;
   Forecast forecast_;
 };

@@ -47,10 +47,10 @@ struct FreeSpace::Links {
 
   Links(const Arm& of, const JointVector& q_rad, const OtherFrames& others)
       : arm(of), poses(forward_kinematics(of, q_rad, others)) {
-    for (const LinkShape& shape : arm.shapes) capsules.add(transformed(poses, shape));
+    for (int s = 0; s < shape_count(arm, poses); ++s) capsules.add(transformed(poses, shape_at(arm, poses, s)));
   }
   ConvexSolid solid(int shape) const {
-    const LinkShape& link = arm.shapes[static_cast<size_t>(shape)];
+    const BodyShape& link = shape_at(arm, poses, shape);
     return link.is_capsule ? ConvexSolid::of(capsules[shape]) : solid_of(poses, link);
   }
   /// Between two shapes; exact below enough_m.
@@ -64,25 +64,33 @@ struct FreeSpace::Links {
 };
 
 void FreeSpace::set(const Snapshot& from, double moving_m, double rest_m) {
-  others_ = place_other_joints(model_.arm, from.others);
+  attachments_ = from.attachments;
+  others_ = place_others(model_.arm, from.others, attachments_);
   copy_resting(from.nearby, resting_);
   const Links links(model_.arm, from.arm.position_rad, others_);
   obstacles_.clear();
   for (int i = 0; i < resting_.count; ++i) {
     const Obstacle& obstacle = resting_.obstacles[i];
+    const AllowedContact allowed = allowed_contact(links.poses, obstacle.id);
+    if (allowed == AllowedContact::kAll) continue;
+    const int last_body = allowed == AllowedContact::kTool ? model_.arm.joints - 1 : model_.arm.joints;
     const ConvexSolid solid = solid_of(obstacle);
     double required_m = required_clearance_m(moving_m, rest_m, obstacle);
     const double now_m = clearance_after(model_.arm, links.poses, &obstacle, 1, 0.0, required_m + kStartAllowance_m);
     required_m = std::min(required_m, now_m - kStartAllowance_m);
-    obstacles_.add({solid, half_box_m(solid), required_m});
+    obstacles_.add({solid, half_box_m(solid), required_m, last_body});
   }
-  for (size_t k = 0; k < model_.self_pairs.size(); ++k) {
-    const SelfPair& pair = model_.self_pairs[k];
-    self_clearance_m_[k] = links.distance_m(pair, pair.clearance_m + kStartAllowance_m) - kStartAllowance_m;
-  }
+  pair_count_ = 0;
+  const auto add_pair = [&](SelfPair pair) {
+    pair.clearance_m = links.distance_m(pair, pair.clearance_m + kStartAllowance_m) - kStartAllowance_m;
+    pairs_[pair_count_++] = pair;
+  };
+  for (const SelfPair& pair : model_.self_pairs) add_pair(pair);
+  for_each_held_pair(model_.arm, attachments_, add_pair);
 }
 
 bool FreeSpace::is_current(const Snapshot& now) const {
+  if (!are_same(now.attachments, attachments_)) return false;
   int count = 0;
   for (int i = 0; i < now.nearby.count; ++i) {
     const Obstacle& obstacle = now.nearby.obstacles[i];
@@ -94,11 +102,12 @@ bool FreeSpace::is_current(const Snapshot& now) const {
 
 bool FreeSpace::keeps_clear_of_obstacles(const Links& links) const {
   for (int s = 0; s < links.capsules.size(); ++s) {
-    const LinkShape& shape = model_.arm.shapes[static_cast<size_t>(s)];
+    const BodyShape& shape = shape_at(model_.arm, links.poses, s);
     if (shape.body == 0) continue;
     const Vector3 centre = links.capsules[s].centre();
     const double extent_m = shape.capsule_body.extent_m();
     for (const StaticObstacle& obstacle : obstacles_) {
+      if (shape.body > obstacle.last_body) continue;
       const double reach_m = extent_m + obstacle.solid.radius_m + obstacle.required_m;
       const Vector3 there = obstacle.solid.rotation.transpose() * (centre - obstacle.solid.centre);
       if ((there.cwiseAbs() - obstacle.half_m).cwiseMax(0.0).squaredNorm() >= reach_m * reach_m) continue;
@@ -114,11 +123,9 @@ bool FreeSpace::keeps_clear_of_obstacles(const Links& links) const {
 }
 
 bool FreeSpace::keeps_clear_of_itself(const Links& links) const {
-  for (size_t k = 0; k < model_.self_pairs.size(); ++k) {
-    const double enough_m = self_clearance_m_[k];
-    if (links.distance_m(model_.self_pairs[k], enough_m) < enough_m) return false;
-  }
-  return true;
+  return std::none_of(
+      pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(pair_count_),
+      [&](const SelfPair& pair) { return links.distance_m(pair, pair.clearance_m) < pair.clearance_m; });
 }
 
 bool FreeSpace::contains(const JointVector& q_rad) const {

@@ -9,14 +9,15 @@ namespace sidestep {
 /// are left out. Large: lives on the heap.
 class FreeSpace {
  public:
-  explicit FreeSpace(const Model& model) : model_(model), self_clearance_m_(model.self_pairs.size()) {}
+  explicit FreeSpace(const Model& model)
+      : model_(model), pairs_(model.self_pairs.size() + kMaxHeldShapes * model.arm.shapes.size()) {}
 
   /// The world of a snapshot. Obstacles are required to be required_clearance_m(moving_m, rest_m) away. Where the arm
   /// is nearer to one now, or two links are nearer than their clearance, that distance less kStartAllowance_m is
   /// enough.
   void set(const Snapshot& from, double moving_m, double rest_m);
 
-  /// Whether the obstacles at rest are those of set(), each within 2 mm.
+  /// Whether the obstacles at rest are those of set(), each within 2 mm, and the attachments are the same.
   bool is_current(const Snapshot& now) const;
 
   bool contains(const JointVector& q_rad) const;
@@ -33,6 +34,7 @@ class FreeSpace {
     ConvexSolid solid;
     Vector3 half_m;  ///< of the box around its core, in the core's frame
     double required_m;
+    int last_body;  ///< shapes of bodies above may touch it
   };
   struct Links;
 
@@ -40,10 +42,12 @@ class FreeSpace {
   bool keeps_clear_of_itself(const Links& links) const;
 
   const Model& model_;
+  Attachments attachments_;
   OtherFrames others_;
   NearbyObstacles resting_;
   BoundedList<StaticObstacle, kMaxNearbyObstacles> obstacles_;
-  std::vector<double> self_clearance_m_;  ///< per pair of Model::self_pairs
+  std::vector<SelfPair> pairs_;  ///< the first pair_count_: of links, and of what the tool holds
+  size_t pair_count_ = 0;
 };
 
 }  // namespace sidestep

@@ -83,7 +83,7 @@ void Planner::append(Guide& guide, const JointVector& q_rad) const {
 bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const ForesightSettings& settings = model_.settings.foresight;
   const double enough_m = settings.clearance_m;
-  const OtherFrames others = place_other_joints(model_.arm, from.others);
+  const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
     return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
                            from.nearby.count, after_s, enough_m);

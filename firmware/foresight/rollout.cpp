@@ -89,7 +89,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
-  const OtherFrames others = place_other_joints(coarse_.arm, from.others);
+  const OtherFrames others = place_others(coarse_.arm, from.others, from.attachments);
   // step() uses only differences of utime.
   arm.utime = state.arm_monitor.accepted.state.utime = state.arm_monitor.before.state.utime = 0;
   Forecast forecast;
@@ -111,6 +111,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     Inputs inputs{{&arm, now_s, count}, {}, {&obstacles_, now_s, count}};
     if (from.tracking) inputs.target = {&target, now_s, count};
     inputs.other_joints = {&from.others, now_s, count};
+    inputs.attachments = {&from.attachments, now_s, count};
     inputs.guide = &guide;
     const Result result = step(coarse_, state, inputs, now_s);
     state = result.next;

@@ -17,8 +17,8 @@ struct MovingLinks {
   double radius_m = 0.0;
 
   MovingLinks(const Arm& arm, const LinkPoses& poses) {
-    for (const LinkShape& shape : arm.shapes)
-      if (shape.body > 0) capsules.add(transformed(poses, shape));
+    for (int s = 0; s < shape_count(arm, poses); ++s)
+      if (shape_at(arm, poses, s).body > 0) capsules.add(transformed(poses, shape_at(arm, poses, s)));
     for (const Capsule& capsule : capsules) centre += capsule.centre() / capsules.size();
     for (const Capsule& capsule : capsules)
       radius_m = std::max(radius_m, (capsule.centre() - centre).norm() + capsule.extent_m());
@@ -69,6 +69,12 @@ class NearestSelection {
 
 }  // namespace
 
+OtherFrames place_others(const Arm& arm, const OtherJoints& joints, const Attachments& attachments) {
+  OtherFrames frames = place_other_joints(arm, joints);
+  if (!attachments.is_empty()) frames.attachments = &attachments;
+  return frames;
+}
+
 void take_snapshot(const Model& model, const Inputs& inputs, const State& state, double now_s, Snapshot& snapshot) {
   snapshot.moves = moves(state.supervision.mode);
   snapshot.tracking = state.supervision.mode == Mode::kTrack;
@@ -78,7 +84,11 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
   snapshot.arm = state.arm_monitor.accepted.state;
   snapshot.others = inputs.other_joints.message ? *inputs.other_joints.message : model.arm.other_positions;
   snapshot.others.velocity.fill(0.0);
-  const OtherFrames others = place_other_joints(model.arm, snapshot.others);
+  if (inputs.attachments.message)
+    snapshot.attachments = *inputs.attachments.message;
+  else
+    snapshot.attachments = {};
+  const OtherFrames others = place_others(model.arm, snapshot.others, snapshot.attachments);
   const LinkPoses poses = forward_kinematics(model.arm, snapshot.arm.position_rad, others);
   if (snapshot.tracking) snapshot.target = present_target(model, poses, inputs.target, now_s);
 

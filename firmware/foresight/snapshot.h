@@ -14,15 +14,19 @@ struct NearbyObstacles {
 
 /// The input of foresight: the state of one control cycle and the world as that cycle extrapolated it.
 struct Snapshot {
-  bool moves = false;      ///< the mode is HOLD or TRACK; if false, the other fields are not valid
-  bool tracking = false;   ///< the mode is TRACK; in HOLD there is no target
-  double now_s = 0.0;      ///< of the cycle, on its clock
-  State state;             ///< after the cycle
-  ArmState arm;            ///< of the cycle
-  Target target;           ///< extrapolated to now_s
-  OtherJoints others;      ///< of the cycle; foresight assumes that they rest
-  NearbyObstacles nearby;  ///< extrapolated to now_s and grown by their uncertainty
+  bool moves = false;       ///< the mode is HOLD or TRACK; if false, the other fields are not valid
+  bool tracking = false;    ///< the mode is TRACK; in HOLD there is no target
+  double now_s = 0.0;       ///< of the cycle, on its clock
+  State state;              ///< after the cycle
+  ArmState arm;             ///< of the cycle
+  Target target;            ///< extrapolated to now_s
+  OtherJoints others;       ///< of the cycle; foresight assumes that they rest
+  Attachments attachments;  ///< of the cycle
+  NearbyObstacles nearby;   ///< extrapolated to now_s and grown by their uncertainty
 };
+
+/// What hangs on the chain. The attachments must outlive the result.
+OtherFrames place_others(const Arm& arm, const OtherJoints& joints, const Attachments& attachments);
 
 /// Fills `snapshot` from the inputs of a cycle and the state after it. If there are more than kMaxNearbyObstacles
 /// obstacles, the snapshot keeps those that come nearest to the moving links, as they are now, within

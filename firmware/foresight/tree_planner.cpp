@@ -195,7 +195,7 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
   for (int i = 0; i < from.nearby.count; ++i)
     if (!from.nearby.obstacles[i].velocity_mps.isZero(0.0)) movers.add(from.nearby.obstacles[i]);
   if (movers.size() == 0) return true;
-  const OtherFrames others = place_other_joints(model_.arm, from.others);
+  const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   const ForesightSettings& settings = model_.settings.foresight;
   for (int sample = 0; sample * kSampleEvery_s <= settings.horizon_s; ++sample) {
     const double after_s = sample * kSampleEvery_s;

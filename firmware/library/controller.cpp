@@ -13,6 +13,7 @@ namespace {
 
 // The constants of the public header are those of the firmware.
 static_assert(Controller::kMostJoints == kMaxJoints && Controller::kMostObstacles == kMaxObstacles);
+static_assert(Controller::kMostHeldShapes == kMaxHeldShapes && Controller::kMostAllowed == kMaxAllowed);
 static_assert(static_cast<int>(Controller::Shape::kSphere) == static_cast<int>(Shape::kSphere));
 static_assert(static_cast<int>(Controller::Shape::kCapsule) == static_cast<int>(Shape::kCapsule));
 static_assert(static_cast<int>(Controller::Shape::kBox) == static_cast<int>(Shape::kBox));
@@ -132,6 +133,7 @@ struct Controller::Inside {
   Newest<sidestep::Target> target;
   Newest<ObstacleSet> obstacles;
   Newest<sidestep::Control> control;
+  Newest<Attachments> attachments;
   bool stopping = false;
 };
 
@@ -171,6 +173,20 @@ bool Controller::set_obstacles(const Obstacle* obstacles, int count, double now_
   return true;
 }
 
+bool Controller::set_attachments(const Obstacle* shapes, int count, const int* allowed, int allowed_count,
+                                 double now_s) {
+  if (count < 0 || count > kMostHeldShapes || allowed_count < 0 || allowed_count > kMostAllowed) return false;
+  auto& newest = inside_->attachments;
+  Attachments& attachments = *newest.draft;
+  attachments.shapes.clear();
+  attachments.allowed.clear();
+  for (int i = 0; i < count; ++i) attachments.shapes.add(obstacle_of(shapes[i]));
+  for (int i = 0; i < allowed_count; ++i) attachments.allowed.add(allowed[i]);
+  if (!inside_->gate.accept(attachments, now_s)) return false;
+  newest.take_draft(now_s);
+  return true;
+}
+
 bool Controller::set_control(const Control& control, double now_s) {
   auto& newest = inside_->control;
   *newest.draft = {0, control.paused ? ControlCommand::kPause : ControlCommand::kResume, control.speed_scale};
@@ -192,6 +208,7 @@ Controller::Result Controller::step(double now_s) {
   Inside& in = *inside_;
   Inputs inputs{in.arm.latest(), in.target.latest(), in.obstacles.latest(), 0, in.stopping};
   inputs.control = in.control.latest();
+  inputs.attachments = in.attachments.latest();
   inputs.guide = in.foresight_thread.latest();
   const sidestep::Result result = sidestep::step(in.model, in.state, inputs, now_s);
   in.state = result.next;

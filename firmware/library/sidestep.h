@@ -22,6 +22,8 @@ class __attribute__((visibility("default"))) Controller {
  public:
   static constexpr int kMostJoints = 10;
   static constexpr int kMostObstacles = 4096;
+  static constexpr int kMostHeldShapes = 16;
+  static constexpr int kMostAllowed = 64;
 
   using Vector = std::array<double, 3>;            ///< x y z
   using Quaternion = std::array<double, 4>;        ///< w x y z, of length 1
@@ -68,6 +70,12 @@ class __attribute__((visibility("default"))) Controller {
   /// An obstacle that is missing in the new set is remembered for timeouts.coast_s and extrapolated with its velocity.
   /// Returns false and keeps the previous set when a number is implausible or there are too many obstacles.
   bool set_obstacles(const Obstacle* obstacles, int count, double now_s);
+
+  /// What the tool holds: `count` shapes in the tool's frame, whose velocities do not count; and what the tool and what
+  /// it holds may touch: `allowed_count` ids of obstacles. It counts until the next call; none of either lets go. An
+  /// allowed obstacle with the id of a held shape is that shape: no link avoids it. Returns false and keeps the
+  /// previous ones when a number is implausible or there are too many.
+  bool set_attachments(const Obstacle* shapes, int count, const int* allowed, int allowed_count, double now_s);
 
   struct Control {
     bool paused = false;       ///< the arm slows to rest and keeps avoiding obstacles

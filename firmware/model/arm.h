@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/model/convex_solid.h"
+#include "firmware/model/body_shape.h"
 #include "firmware/model/other_joints.h"
 #include "firmware/model/types.h"
 
@@ -22,15 +22,10 @@ struct JointLimits {
   JointVector acceleration_radps2;
 };
 
-/// One collision shape of the URDF, or one convex piece of a mesh, in the frame of its body.
-struct LinkShape {
+/// One collision shape of the URDF, or one convex piece of a mesh.
+struct LinkShape : BodyShape {
   std::string link;
-  int body;                ///< 0 is the base; body i moves with joints 1 to i
-  Capsule capsule_body;    ///< encloses the shape; cheap tests use it alone. In the frame of its body, or other joint
   bool below_arm = false;  ///< belongs to the structure that carries the base link, not to the arm
-  int other_joint = -1;    ///< index into Arm::other_joints of the joint that moves it on its body; -1: none
-  bool is_capsule = true;  ///< the shape is that capsule; otherwise it is `solid`
-  ConvexSolid solid = {};  ///< in the same frame as the capsule
   std::shared_ptr<const Polyhedron> polyhedron = nullptr;  ///< that of `solid`
   double excess_p95_m = 0.0;  ///< 95 % of the surface of a mesh's pieces are less far from the mesh; 0 for other shapes
   double excess_m = 0.0;      ///< the largest distance
@@ -62,7 +57,7 @@ struct Arm {
   std::array<Eigen::Isometry3d, kMaxJoints + 1> joint_placement;  ///< of joint i in body i - 1, for i = 1 to n
   Eigen::Isometry3d last_body_from_tool;
   JointLimits limits;
-  std::vector<LinkShape> shapes;         ///< 1 to kMaxShapes
+  std::vector<LinkShape> shapes;         ///< 1 to kMaxLinkShapes
   std::vector<OtherJoint> other_joints;  ///< at most kMaxOtherJoints, parents first
   OtherJoints other_positions;           ///< their positions unless a message tells others
   OtherFrames other_frames;              ///< the frames at these positions

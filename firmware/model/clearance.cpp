@@ -13,7 +13,7 @@ struct Link {
   Capsule capsule;
   Vector3 axis;
   double per_length2;  ///< 1 / |axis|^2, 1/m2; 0 for a sphere
-  bool moves;
+  int body;
 
   /// From the nearest point of the axis to p.
   Vector3 gap_to(const Vector3& p) const {
@@ -29,12 +29,12 @@ struct Links {
   Vector3 upper = -lower;
   double radius_m = 0.0;  // the largest of all shapes
 
-  Links(const Arm& arm, const BoundedList<Capsule, kMaxShapes>& capsules) {
+  Links(const Arm& arm, const LinkPoses& poses, const BoundedList<Capsule, kMaxShapes>& capsules) {
     for (int s = 0; s < capsules.size(); ++s) {
       const Capsule& capsule = capsules[s];
       const Vector3 axis = capsule.end - capsule.start;
       const double length2_m2 = axis.squaredNorm();
-      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, arm.shapes[s].body > 0});
+      shapes.add({capsule, axis, length2_m2 > 0.0 ? 1.0 / length2_m2 : 0.0, shape_at(arm, poses, s).body});
       lower = lower.cwiseMin(capsule.start).cwiseMin(capsule.end);
       upper = upper.cwiseMax(capsule.start).cwiseMax(capsule.end);
       radius_m = std::max(radius_m, capsule.radius_m);
@@ -55,13 +55,16 @@ class Gatherer {
   Gatherer(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach, Clearance& clearance)
       : arm_(arm),
         poses_(poses),
-        links_(arm, clearance.links),
+        links_(arm, poses, clearance.links),
         view_(view),
         horizon_s_(reach.horizon_s),
         limit_m_(reach.range_m),
         clearance_(clearance) {}
 
   void gather(const Obstacle& obstacle, int index, double growth_m) {
+    const AllowedContact allowed = allowed_contact(poses_, obstacle.id);
+    if (allowed == AllowedContact::kAll) return;
+    last_body_ = allowed == AllowedContact::kTool ? arm_.joints - 1 : arm_.joints;
     if (obstacle.capsule.is_sphere())
       gather_sphere(obstacle, index, growth_m);
     else
@@ -81,6 +84,7 @@ class Gatherer {
 
     for (int s = 0; s < links_.shapes.size(); ++s) {
       const Link& link = links_.shapes[s];
+      if (link.body > last_body_) continue;
       const Vector3 gap = link.gap_to(centre);
       const double distance2_m2 = gap.squaredNorm();
       if (distance2_m2 > reach2_m2) continue;
@@ -114,6 +118,7 @@ class Gatherer {
 
     const Obstacle present = view_.extrapolated(index);
     for (int s = 0; s < links_.shapes.size(); ++s) {
+      if (links_.shapes[s].body > last_body_) continue;
       const Capsule& link = links_.shapes[s].capsule;
       const NearestPoints points = nearest_on_axes(link, present.capsule);
       if ((points.a - points.b).squaredNorm() > square(relevant_axis_distance_m(radii_m, core_m, travel_m))) continue;
@@ -131,7 +136,7 @@ class Gatherer {
   template <typename Solid, typename Velocity, typename Predict>
   void add_pair(int shape, int obstacle, Proximity now, const Solid& solid, const Velocity& velocity, double travel_m,
                 const Predict& predict) {
-    const LinkShape& link = arm_.shapes[shape];
+    const BodyShape& link = shape_at(arm_, poses_, shape);
     const PosedShape posed{link, poses_, links_.shapes[shape].capsule};
     now.shape = shape;
     now.obstacle = obstacle;
@@ -179,7 +184,7 @@ class Gatherer {
 
   /// The same for a sphere and one link: a link that does not move can only change Clearance::nearest.
   double relevant_axis_distance_m(const Link& link, double radii_m, double travel_m) const {
-    return link.moves ? relevant_axis_distance_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
+    return link.body > 0 ? relevant_axis_distance_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
   }
 
   /// Adds a pair to the list. Once the list is full, limit_m_ is the greatest distance in it, and a nearer pair
@@ -203,7 +208,8 @@ class Gatherer {
   const double horizon_s_;
   double limit_m_;  ///< pairs whose least distance is not below this are not kept
   Clearance& clearance_;
-  int farthest_ = 0;  ///< index of the pair with the greatest distance in a full list
+  int last_body_ = 0;  ///< links of bodies above may touch the obstacle
+  int farthest_ = 0;   ///< index of the pair with the greatest distance in a full list
 };
 
 }  // namespace
@@ -216,7 +222,7 @@ Obstacle ObstacleView::extrapolated(int index, double later_s) const {
 
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach) {
   Clearance clearance;
-  for (const LinkShape& shape : arm.shapes) clearance.links.add(transformed(poses, shape));
+  for (int s = 0; s < shape_count(arm, poses); ++s) clearance.links.add(transformed(poses, shape_at(arm, poses, s)));
   Gatherer gatherer(arm, poses, view, reach, clearance);
   for (int o = 0; o < view.in_set(); ++o) gatherer.gather(view.set->obstacles[o], o, view.growth_m);
   for (int o = view.in_set(); o < view.count(); ++o) gatherer.gather(view.at(o), o, 0.0);

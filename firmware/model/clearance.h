@@ -23,7 +23,8 @@ constexpr int kMaxNear = 64;
 
 /// Distances between the arm and its obstacles at one instant.
 struct Clearance {
-  /// The link shapes in the base frame, in the order of Arm::shapes, for the other computations of the cycle.
+  /// The link shapes and held shapes in the base frame, numbered as by shape_at(), for the other computations of the
+  /// cycle.
   BoundedList<Capsule, kMaxShapes> links;
 
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
@@ -66,7 +67,8 @@ struct Reach {
 };
 
 /// Distances of all link shapes to all obstacles, extrapolated to now and grown. Takes time proportional to shapes x
-/// obstacles at most; an obstacle too far away for any result takes one comparison. No allocation.
+/// obstacles at most; an obstacle too far away for any result takes one comparison. Pairs whose contact is allowed
+/// (Attachments) are left out. No allocation.
 Clearance measure_clearance(const Arm& arm, const LinkPoses& poses, const ObstacleView& view, const Reach& reach);
 
 }  // namespace sidestep

@@ -50,7 +50,7 @@ LinkPoses forward_kinematics(const Arm& arm, const JointVector& q_rad, const Oth
   return poses;
 }
 
-Capsule transformed(const LinkPoses& poses, const LinkShape& shape) {
+Capsule transformed(const LinkPoses& poses, const BodyShape& shape) {
   const int frame = frame_of(shape);
   const Matrix3& rotation = poses.rotation[frame];
   const Vector3& origin = poses.origin[frame];
@@ -58,7 +58,7 @@ Capsule transformed(const LinkPoses& poses, const LinkShape& shape) {
   return {origin + rotated(rotation, capsule.start), origin + rotated(rotation, capsule.end), capsule.radius_m};
 }
 
-ConvexSolid solid_of(const LinkPoses& poses, const LinkShape& shape) {
+ConvexSolid solid_of(const LinkPoses& poses, const BodyShape& shape) {
   if (shape.is_capsule) return ConvexSolid::of(transformed(poses, shape));
   const int frame = frame_of(shape);
   const Matrix3& rotation = poses.rotation[frame];

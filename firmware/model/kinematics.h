@@ -4,6 +4,7 @@
 #include <bitset>
 
 #include "firmware/model/arm.h"
+#include "firmware/model/attachments.h"
 
 namespace sidestep {
 
@@ -34,16 +35,38 @@ inline LinkPoses forward_kinematics(const Arm& arm, const JointVector& q_rad) {
   return forward_kinematics(arm, q_rad, arm.other_frames);
 }
 
-/// Index into LinkPoses of the frame in which a link shape is given.
-inline int frame_of(const LinkShape& shape) {
+/// The shapes that move with the arm are numbered: those of Arm::shapes, then what the tool holds.
+inline int shape_count(const Arm& arm, const LinkPoses& poses) {
+  const Attachments* attachments = poses.others->attachments;
+  return static_cast<int>(arm.shapes.size()) + (attachments ? attachments->held.size() : 0);
+}
+inline const BodyShape& shape_at(const Arm& arm, const LinkPoses& poses, int index) {
+  const int links = static_cast<int>(arm.shapes.size());
+  if (index < links) return arm.shapes[static_cast<size_t>(index)];
+  return poses.others->attachments->held[index - links];
+}
+
+/// Which shapes may touch an obstacle.
+enum class AllowedContact { kNone, kTool, kAll };
+
+/// kNone unless Attachments::allowed names the obstacle. kTool: the shapes of the last body and what the tool holds.
+/// kAll: a held shape has the obstacle's id, so the obstacle is what the tool holds.
+inline AllowedContact allowed_contact(const LinkPoses& poses, int32_t obstacle_id) {
+  const Attachments* attachments = poses.others->attachments;
+  if (!attachments || !attachments->allows(obstacle_id)) return AllowedContact::kNone;
+  return attachments->holds(obstacle_id) ? AllowedContact::kAll : AllowedContact::kTool;
+}
+
+/// Index into LinkPoses of the frame in which a shape is given.
+inline int frame_of(const BodyShape& shape) {
   return shape.other_joint < 0 ? shape.body : other_frame(shape.other_joint);
 }
 
-/// The capsule of a link shape in the base frame.
-Capsule transformed(const LinkPoses& poses, const LinkShape& shape);
+/// The capsule around a shape in the base frame.
+Capsule transformed(const LinkPoses& poses, const BodyShape& shape);
 
-/// The exact shape of a link shape in the base frame.
-ConvexSolid solid_of(const LinkPoses& poses, const LinkShape& shape);
+/// The exact shape in the base frame.
+ConvexSolid solid_of(const LinkPoses& poses, const BodyShape& shape);
 
 /// The Jacobian of a body's point p_base (m): its velocity is this, 3 x n, times the joint velocities. The columns of
 /// joints beyond the body are 0.

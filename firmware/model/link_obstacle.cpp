@@ -2,7 +2,7 @@
 
 namespace sidestep {
 
-Obstacle link_obstacle(const LinkPoses& poses, const LinkShape& shape, const JointVector& velocity_radps) {
+Obstacle link_obstacle(const LinkPoses& poses, const BodyShape& shape, const JointVector& velocity_radps) {
   Obstacle link;
   link.shape = Shape::kCapsule;
   link.capsule = transformed(poses, shape);

@@ -8,7 +8,7 @@ namespace sidestep {
 
 /// A link shape in one configuration, and the capsule around it in the base frame.
 struct PosedShape {
-  const LinkShape& shape;
+  const BodyShape& shape;
   const LinkPoses& poses;
   const Capsule& capsule;
 

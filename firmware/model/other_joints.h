@@ -35,12 +35,15 @@ struct OtherJoints {
   std::array<double, kMaxOtherJoints> velocity{};
 };
 
-/// Where the joints outside the chain are: per joint its frame in the frame of the arm's body that carries it, and its
-/// velocity.
+struct Attachments;
+
+/// What hangs on the chain: where the joints outside it are (per joint its frame in the frame of the arm's body that
+/// carries it, and its velocity), and what the tool holds.
 struct OtherFrames {
   std::array<Matrix3, kMaxOtherJoints> rotation;
   std::array<Vector3, kMaxOtherJoints> origin;  ///< m
   std::array<double, kMaxOtherJoints> velocity{};
+  const Attachments* attachments = nullptr;  ///< null: nothing; must outlive this
 };
 
 struct Arm;

@@ -11,7 +11,7 @@ namespace {
 
 /// A link shape in the base frame, and the ball around it.
 struct Link {
-  const LinkShape& shape;
+  const BodyShape& shape;
   const LinkPoses& poses;
   Capsule capsule;
   Vector3 centre;
@@ -22,7 +22,8 @@ using Links = BoundedList<Link, kMaxShapes>;
 /// The shapes that move with a joint.
 Links moving_links(const Arm& arm, const LinkPoses& poses) {
   Links links;
-  for (const LinkShape& shape : arm.shapes) {
+  for (int s = 0; s < shape_count(arm, poses); ++s) {
+    const BodyShape& shape = shape_at(arm, poses, s);
     if (shape.body == 0) continue;
     const Capsule capsule = transformed(poses, shape);
     links.emplace(shape, poses, capsule, capsule.centre(), shape.capsule_body.extent_m());
@@ -32,11 +33,13 @@ Links moving_links(const Arm& arm, const LinkPoses& poses) {
 
 /// The least of least_m and the distances of the links to an obstacle in the ball of extent_m around centre.
 /// distance_m(capsule, least_m) is called only for links whose ball is nearer to the obstacle's than least_m. Where it
-/// is less than least_m and the shape is no capsule, the exact distance to solid() decides.
+/// is less than least_m and the shape is no capsule, the exact distance to solid() decides. Links of bodies above
+/// last_body do not count.
 template <typename Distance, typename Solid>
-double nearest_m(const Links& links, const Vector3& centre, double extent_m, double least_m, const Distance& distance_m,
-                 const Solid& solid) {
+double nearest_m(const Links& links, int last_body, const Vector3& centre, double extent_m, double least_m,
+                 const Distance& distance_m, const Solid& solid) {
   for (const Link& link : links) {
+    if (link.shape.body > last_body) continue;
     const double near_m = link.extent_m + extent_m + least_m;
     if (near_m <= 0.0 || (link.centre - centre).squaredNorm() >= near_m * near_m) continue;
     double found_m = distance_m(link.capsule, least_m);
@@ -47,21 +50,21 @@ double nearest_m(const Links& links, const Vector3& centre, double extent_m, dou
   return least_m;
 }
 
-double nearest_to_sphere_m(const Links& links, const Vector3& centre, double radius_m, double least_m) {
+double nearest_to_sphere_m(const Links& links, int last_body, const Vector3& centre, double radius_m, double least_m) {
   const auto distance_m = [&](const Capsule& link, double) {
     return (centre - nearest_on_segment(link.start, link.end, centre)).norm() - link.radius_m - radius_m;
   };
-  return nearest_m(links, centre, radius_m, least_m, distance_m, [&] {
+  return nearest_m(links, last_body, centre, radius_m, least_m, distance_m, [&] {
     return ConvexSolid::of(Capsule{centre, centre, radius_m});
   });
 }
 
-double nearest_to_long_m(const Links& links, const Obstacle& obstacle, double least_m) {
+double nearest_to_long_m(const Links& links, int last_body, const Obstacle& obstacle, double least_m) {
   const Capsule& capsule = obstacle.capsule;
   const auto distance_m = [&](const Capsule& link, double enough_m) {
     return surface_distance_m(link, obstacle, enough_m);
   };
-  return nearest_m(links, capsule.centre(), capsule.extent_m(), least_m, distance_m,
+  return nearest_m(links, last_body, capsule.centre(), capsule.extent_m(), least_m, distance_m,
                    [&] { return solid_of(obstacle); });
 }
 
@@ -74,11 +77,14 @@ double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* o
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];
     const Capsule& capsule = obstacle.capsule;
+    const AllowedContact allowed = allowed_contact(poses, obstacle.id);
+    if (allowed == AllowedContact::kAll) continue;
+    const int last_body = allowed == AllowedContact::kTool ? arm.joints - 1 : arm.joints;
     const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
-    const double found_m =
-        capsule.is_sphere()
-            ? nearest_to_sphere_m(links, capsule.start + obstacle.velocity_mps * after_s, capsule.radius_m, below_m)
-            : nearest_to_long_m(links, extrapolated(obstacle, after_s), below_m);
+    const double found_m = capsule.is_sphere()
+                               ? nearest_to_sphere_m(links, last_body, capsule.start + obstacle.velocity_mps * after_s,
+                                                     capsule.radius_m, below_m)
+                               : nearest_to_long_m(links, last_body, extrapolated(obstacle, after_s), below_m);
     if (found_m < below_m) least_m = found_m + allowed_m;
   }
   return least_m;

@@ -5,9 +5,10 @@
 
 namespace sidestep {
 
-/// The least surface distance, m, between the moving links in one configuration and `count` obstacles extrapolated by
-/// after_s. Exact below enough_m; else enough_m is returned, without the exact computation. Where allowance_m is not
-/// null, obstacle i counts as farther away by allowance_m[i].
+/// The least surface distance, m, between the moving links in one configuration, with what the tool holds, and `count`
+/// obstacles extrapolated by after_s. Allowed contacts (Attachments) do not count. Exact below enough_m; else enough_m
+/// is returned, without the exact computation. Where allowance_m is not null, obstacle i counts as farther away by
+/// allowance_m[i].
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
                        double enough_m, const double* allowance_m = nullptr);
 

@@ -6,7 +6,9 @@ namespace sidestep {
 
 constexpr int kMinJoints = 6;
 constexpr int kMaxJoints = 10;
-constexpr int kMaxShapes = 128;      ///< collision shapes of an arm, pieces of meshes included
+constexpr int kMaxLinkShapes = 128;  ///< collision shapes of an arm, pieces of meshes included
+constexpr int kMaxHeldShapes = 16;   ///< shapes that its tool holds
+constexpr int kMaxShapes = kMaxLinkShapes + kMaxHeldShapes;
 constexpr int kMaxObstacles = 4096;  ///< in one obstacle set
 
 using Vector3 = Eigen::Vector3d;

@@ -68,6 +68,7 @@ class Rerun {
     if (!put_obstacle_values(obstacles_->message)) return "obstacle values of wrong size";
     if (inputs.guide) inputs.guide = &arguments.guide;
     if (inputs.control.message) inputs.control.message = &arguments.control;
+    if (inputs.attachments.message) inputs.attachments.message = &arguments.attachments;
     if (inputs.other_joints.message) inputs.other_joints.message = &arguments.other_joints;
     if (found_.cycles++ == 0) state_ = arguments.state;
     const Result result = step(config_.model, state_, inputs, arguments.now_s);

@@ -35,9 +35,9 @@ std::optional<Reply> reply_to(size_t arm, int64_t utime, int64_t patience_us, Si
 /// One period of one arm. Returns false when the controller has answered before, but not in this period.
 bool exchange(size_t arm, Run& run, int64_t utime, SimWire& wire, const std::atomic<bool>& interrupted) {
   const bool answered = run.status().has_value();
+  run.measure();
   wire.publish(arm, run.world(), utime);
   wire.publish(arm, run.plant.q_rad(), run.plant.qd_radps(), utime);
-  run.measure();
   const auto reply = reply_to(arm, utime, answered ? kLostAfter_us : kRepeat_us, wire, interrupted);
   if (!reply) return !answered;
   run.receive(reply->command);

@@ -42,9 +42,10 @@ class RealTimeArm {
   }
 
   void publish_world(int64_t due_us) {
-    const World world = run_.world();
+    const World& world = run_.world();
     if (const auto target = sensing_.target(world.target)) wire_.publish(arm_, *target, due_us);
     if (const auto obstacles = sensing_.obstacles(world.obstacles)) wire_.publish(arm_, *obstacles, due_us);
+    if (world.grip) wire_.publish(arm_, *world.grip, due_us);
   }
 
   void publish_arm(int64_t due_us) {
@@ -111,9 +112,9 @@ class RealTimeLoop {
     const bool starts_period = tick_ % ticks_ == 0;
     for (RealTimeArm& arm : arms_) {
       arm.advance_to(due_us);
+      if (starts_period) arm.measure();
       if (publish && starts_period) arm.publish_world(due_us);
       if (publish) arm.publish_arm(due_us);
-      if (starts_period) arm.measure();
     }
     if (!starts_period) return;
     if (started_) simulation_.record();

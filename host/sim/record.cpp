@@ -50,7 +50,7 @@ std::string header(int joints, int obstacles) {
 void evaluate(Row& row, const Truth& truth) {
   row.tool_m = truth.tool_m();
   row.target_distance_m = (row.world.target.motion.position_m - row.tool_m).norm();
-  row.nearest = truth.nearest(row.world.all());
+  row.nearest = truth.nearest_in(row.world);
   row.axis_distance_m = truth.axis_distance_m(row.world.obstacles);
   row.nearest_links = truth.nearest_links(kSelfRange_m);
 }

@@ -12,6 +12,7 @@ Run::Run(const Scenario& scenario, const std::string& csv_file)
       scenario_(scenario),
       truth_(Arm(scenario.robot.urdf_file, scenario.robot.base, scenario.robot.tip, scenario.robot.package_path,
                  scenario.robot.joint_positions)),
+      grasp_(scenario.grasp),
       summary_(scenario.period_us) {
   if (truth_.joints() != scenario.start_rad.size()) {
     throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,
@@ -34,13 +35,15 @@ void Run::measure() {
   row_.q_rad = plant.q_rad();
   row_.qd_radps = plant.qd_radps();
   truth_.place(row_.q_rad);
+  const double t_s = scenario_.time_s(period());
+  row_.world = advanced(scenario_.world, t_s);
+  grasp_.apply(t_s, truth_.arm().base_from_tool(), row_.world);
 }
 
 void Run::record(const std::vector<Run>& all) {
   row_.t_s = scenario_.time_s(period());
   row_.command_radps = plant.last_command_radps();
   if (status_) row_.status = *status_;
-  row_.world = world();
   row_.neighbour_m = neighbour_clearance_m(all);
   evaluate(row_, truth_);
   summary_.add(row_);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "host/sim/grasp.h"
 #include "host/sim/record.h"
 #include "host/sim/summary.h"
 
@@ -22,12 +23,12 @@ class Run {
   bool tracked() const { return summary_.rows() > 0; }
   bool complete() const { return summary_.rows() > scenario_.periods; }
 
-  /// The coming control period: its index, and the world at its start.
+  /// Index of the coming control period.
   int period() const { return summary_.rows(); }
-  World world() const { return advanced(scenario_.world, scenario_.time_s(period())); }
 
-  /// Stores the measured joints at the start of the coming period.
+  /// Stores the measured joints and the world at the start of the coming period.
   void measure();
+  const World& world() const { return row_.world; }  ///< as of measure()
 
   /// Records the coming period with the measured joints, and advances to the next one. `all`: the runs of all arms in
   /// the world, each after measure(); contains this run.
@@ -49,6 +50,7 @@ class Run {
 
   Scenario scenario_;
   Truth truth_;
+  Grasp grasp_;
   std::optional<CsvFile> csv_;
   Summary summary_;
   std::optional<Status> status_;  ///< the last one received

@@ -127,8 +127,10 @@ std::vector<Scenario> load_scenario(const std::string& file) {
   std::vector<Scenario> arms{scenario};
   if (root.has("arms"))
     arms = read_arms(root, scenario);
-  else
+  else {
     read_arm(root, arms.front());
+    arms.front().grasp = read_grasp(root, scenario.world.obstacles);
+  }
   root.finish();
   return arms;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/sim/arm_setup.h"
+#include "host/sim/grasp.h"
 #include "host/sim/plant.h"
 #include "host/sim/sensing.h"
 #include "host/sim/world.h"
@@ -50,6 +51,7 @@ struct Scenario {
   PlantSpec plant;
   SensingSpec sensing;
   World world;  ///< at t = 0, base frame
+  std::vector<GraspStep> grasp;
   Expectations expect;
   Published published;
 

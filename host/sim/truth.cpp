@@ -35,13 +35,14 @@ double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
 
 }  // namespace
 
-Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, double within_m) const {
+Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, int last_body, double within_m) const {
   Nearest best;
   best.clearance_m = within_m;
   std::vector<std::pair<double, const ArmPart*>> candidates;  // smallest bound first
   for (size_t i = 0; i < obstacles.size(); ++i) {
     candidates.clear();
     for (const ArmPart& part : arm_.parts()) {
+      if (part.body > last_body) continue;
       const double bound_m = lower_bound_m(part, obstacles[i]);
       if (bound_m < best.clearance_m) candidates.emplace_back(bound_m, &part);
     }
@@ -52,6 +53,30 @@ Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, double within_m) 
       const double distance_m =
           signed_distance_m(part->solid, part->base_from_part, obstacles[i].solid, base_from_obstacle);
       if (distance_m < best.clearance_m) best = {distance_m, static_cast<int>(i), part->link};
+    }
+  }
+  return best;
+}
+
+Nearest Truth::nearest_in(const World& world) const {
+  const std::vector<Obstacle> all = world.all();
+  if (!world.grip) return nearest(all);
+  Nearest best;
+  const auto consider = [&best](Nearest found, size_t obstacle) {
+    if (found.clearance_m >= best.clearance_m) return;
+    best = std::move(found);
+    best.obstacle = static_cast<int>(obstacle);
+  };
+  for (size_t i = 0; i < all.size(); ++i) {
+    const bool is_held = world.grip->holds(all[i].id), is_allowed = world.grip->allows(all[i].id);
+    const int last_body = is_held ? joints() - 2 : is_allowed ? joints() - 1 : joints();
+    consider(nearest({all[i]}, last_body, best.clearance_m), i);
+    if (is_held || is_allowed) continue;
+    for (const Obstacle& held : world.grip->held) {
+      const Eigen::Isometry3d base_from_held = arm_.base_from_tool() * held.motion.base_from_body();
+      consider({signed_distance_m(held.solid, base_from_held, all[i].solid, all[i].motion.base_from_body()), 0,
+                "held object"},
+               i);
     }
   }
   return best;

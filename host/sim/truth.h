@@ -36,7 +36,14 @@ class Truth {
 
   /// The closest pair of a link, moved by a joint or not, and an obstacle, among the pairs closer than within_m.
   /// Most obstacles cost only a comparison of bounding volumes.
-  Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const;
+  Nearest nearest(const std::vector<Obstacle>& obstacles, double within_m = kNothingNear) const {
+    return nearest(obstacles, kMaxJoints, within_m);
+  }
+
+  /// The same for all obstacles of a world. What the tool holds counts as a link: to all obstacles, and to the links
+  /// but those of the last two bodies. The links of the last body, and what the tool holds, may touch allowed
+  /// obstacles.
+  Nearest nearest_in(const World& world) const;
 
   /// The closest links that must not touch each other, among those closer than within_m (self_distance.h).
   NearestLinks nearest_links(double within_m = kNothingNear) const { return self_->nearest(arm_, within_m); }
@@ -57,6 +64,9 @@ class Truth {
   double axis_distance_m(const std::vector<Obstacle>& obstacles) const;
 
  private:
+  /// Only links of bodies up to last_body.
+  Nearest nearest(const std::vector<Obstacle>& obstacles, int last_body, double within_m) const;
+
   Arm arm_;
   std::shared_ptr<const SelfDistance> self_;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
+#include <sidestep/attachments_t.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/joint_state_t.hpp>
@@ -63,6 +64,16 @@ obstacles_t message_of(const std::vector<Obstacle>& obstacles, int64_t utime) {
   message.utime = utime;
   message.num_obstacles = static_cast<int32_t>(obstacles.size());
   for (const Obstacle& obstacle : obstacles) message.obstacles.push_back(message_of(obstacle));
+  return message;
+}
+
+attachments_t message_of(const Grip& grip, int64_t utime) {
+  attachments_t message;
+  message.utime = utime;
+  message.num_shapes = static_cast<int32_t>(grip.held.size());
+  for (const Obstacle& held : grip.held) message.shapes.push_back(message_of(held));
+  message.num_allowed = static_cast<int32_t>(grip.allowed.size());
+  message.allowed = grip.allowed;
   return message;
 }
 
@@ -229,6 +240,7 @@ SimWire::~SimWire() = default;
 void SimWire::publish(size_t arm, const World& world, int64_t utime) {
   publish(arm, world.target, utime);
   publish(arm, world.obstacles, utime);
+  if (world.grip) publish(arm, *world.grip, utime);
 }
 
 void SimWire::publish(size_t arm, const Target& target, int64_t utime) {
@@ -237,6 +249,10 @@ void SimWire::publish(size_t arm, const Target& target, int64_t utime) {
 
 void SimWire::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {
   network_->publish(network_->channels[arm].obstacles, message_of(obstacles, utime), utime);
+}
+
+void SimWire::publish(size_t arm, const Grip& grip, int64_t utime) {
+  network_->publish(network_->channels[arm].attachments, message_of(grip, utime), utime);
 }
 
 void SimWire::publish(size_t arm, const JointVector& q_rad, const JointVector& qd_radps, int64_t utime) {

@@ -1,5 +1,7 @@
 #include "host/sim/world.h"
 
+#include <algorithm>
+
 namespace sidestep::sim {
 namespace {
 
@@ -39,6 +41,14 @@ Motion transformed(const Eigen::Isometry3d& b_from_a, Motion motion) {
 }
 
 }  // namespace
+
+bool Grip::holds(int32_t id) const {
+  return std::any_of(held.begin(), held.end(), [id](const Obstacle& obstacle) { return obstacle.id == id; });
+}
+
+bool Grip::allows(int32_t id) const {
+  return std::find(allowed.begin(), allowed.end(), id) != allowed.end();
+}
 
 std::vector<Obstacle> World::all() const {
   std::vector<Obstacle> all = obstacles;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "host/sim/path.h"
@@ -34,11 +35,21 @@ struct Target {
   bool tracks_orientation = false;
 };
 
+/// What the tool of an arm holds and may touch.
+struct Grip {
+  std::vector<Obstacle> held;    ///< obstacles of the world, here in the tool's frame
+  std::vector<int32_t> allowed;  ///< ids of obstacles that the tool and what it holds may touch
+
+  bool holds(int32_t id) const;
+  bool allows(int32_t id) const;
+};
+
 /// Target and obstacles of an arm at one instant.
 struct World {
   Target target;
   std::vector<Obstacle> obstacles;
   std::vector<Obstacle> surroundings;  ///< at rest; in the configuration of the controller, not in messages
+  std::optional<Grip> grip;            ///< absent in a scenario in which nothing is grasped
 
   /// Obstacles, then surroundings.
   std::vector<Obstacle> all() const;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "firmware/io/config/yaml_geometry.h"
+#include "firmware/model/attachments.h"
 
 namespace sidestep::sim {
 namespace {
@@ -36,6 +38,17 @@ Motion read_motion(YamlSection& section) {
   if (section.has("angular_velocity_radps"))
     motion.angular_velocity_radps = section.vector("angular_velocity_radps", kVelocityRange);
   return motion;
+}
+
+/// A list of ids; empty when absent.
+std::vector<int32_t> read_ids(YamlSection& section, const std::string& key, int most) {
+  if (!section.has(key)) return {};
+  std::vector<int32_t> ids;
+  for (const double number : section.numbers(key, 0, most, {-2147483648.0, 2147483647.0})) {
+    ids.push_back(static_cast<int32_t>(number));
+    if (ids.back() != number) section.fail(key, "must be whole numbers");
+  }
+  return ids;
 }
 
 Solid solid_of(const ShapeSize& shape) {
@@ -84,6 +97,22 @@ std::vector<Obstacle> read_obstacles(YamlSection& scenario) {
     obstacles.push_back(obstacle);
   }
   return obstacles;
+}
+
+std::vector<GraspStep> read_grasp(YamlSection& scenario, const std::vector<Obstacle>& obstacles) {
+  std::vector<GraspStep> steps;
+  for (YamlSection& section : scenario.sections("grasp")) {
+    GraspStep& step = steps.emplace_back();
+    step.at_s = section.number("at_s", kTimeRange_s);
+    if (steps.size() > 1 && step.at_s < steps[steps.size() - 2].at_s) section.fail("at_s", "must not decrease");
+    step.held = read_ids(section, "held", kMaxHeldShapes);
+    step.allowed = read_ids(section, "allowed", kMaxAllowed);
+    for (const int32_t id : step.held)
+      if (std::none_of(obstacles.begin(), obstacles.end(), [id](const Obstacle& o) { return o.id == id; }))
+        section.fail("held", fmt::format("there is no obstacle {}", id));
+    section.finish();
+  }
+  return steps;
 }
 
 std::vector<Obstacle> read_surroundings(YamlSection& config) {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "firmware/io/config/yaml_section.h"
-#include "host/sim/world.h"
+#include "host/sim/grasp.h"
 
 namespace sidestep::sim {
 
@@ -12,6 +12,9 @@ Target read_target(YamlSection section);
 
 /// The list `obstacles` of a scenario.
 std::vector<Obstacle> read_obstacles(YamlSection& scenario);
+
+/// The list `grasp` of a scenario with these obstacles; empty when absent.
+std::vector<GraspStep> read_grasp(YamlSection& scenario, const std::vector<Obstacle>& obstacles);
 
 /// The list `surroundings` of a controller's configuration; empty when absent. Ids as in the controller's status.
 std::vector<Obstacle> read_surroundings(YamlSection& config);

@@ -24,7 +24,7 @@ PICTURES = {runs.ROOT / f"host/scenarios/{name}.png": name for name in ("closing
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
             "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
-            "shelf-with-a-visitor": " (Franka Panda)"}
+            "shelf-with-a-visitor": " (Franka Panda)", "fetch": " (Franka Panda)"}
 PLANNED = "planned"  # the paper's law with the other reading of its tool velocity
 BLOCK = re.compile(r"(<!-- make docs: ([\w-]+) -->\n)(.*?)(<!-- end -->)", re.S)
 
@@ -115,7 +115,8 @@ def scenes_table(done):
 def guided_sentence(done):
     shares = {name: np.mean(done[name, "sidestep"][0].columns["foresight"] == 1) for name in EXAMPLES}
     guided = [f"{share * 100:.0f} % of the time in `{name}`" for name, share in shares.items() if share > 0]
-    return f"Foresight guides the arm for {' and '.join(guided)}, and never in the other scenes."
+    listed = " and ".join([", ".join(guided[:-1]), guided[-1]] if guided[1:] else guided)
+    return f"Foresight guides the arm for {listed}, and never in the other scenes."
 
 
 def two_arms_table(done):

@@ -17,6 +17,7 @@ struct FuzzedInputs {
   Target target;
   ObstacleSet obstacles;
   Control control;
+  Attachments attachments;
   double now_s = 0.0;
 };
 
@@ -31,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto inputs = std::make_unique<FuzzedInputs>();  // kept, so that messages follow each other as in a run
   if (size == 0) return 0;
   inputs->now_s += 0.01;
-  const uint8_t channel = data[0] % 5;
+  const uint8_t channel = data[0] % 6;
   ++data, --size;
   if (channel == 0 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->arm)) require_arm(inputs->arm);
   if (channel == 1 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->target))
@@ -41,5 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (channel == 3 && inputs->iiwa.receive(data, size, inputs->now_s, inputs->arm)) require_arm(inputs->arm);
   if (channel == 4 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->control))
     require(plausible(inputs->control));
+  if (channel == 5 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->attachments)) {
+    for (const Obstacle& shape : inputs->attachments.shapes) require(plausible(shape));
+    require(inputs->attachments.held.size() == inputs->attachments.shapes.size());
+  }
   return 0;
 }

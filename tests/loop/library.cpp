@@ -117,6 +117,37 @@ void a_person_at_rest_is_kept_farther_away_than_a_thing(void**) {
   check(thing_m > 0.003 && thing_m < 0.012 && person_m > 0.018, "%g m and %g m", thing_m, person_m);
 }
 
+/// The target is the centre of a sphere. What the tool holds reaches 0.1 m farther than the tool.
+void what_is_held_is_kept_clear_and_what_is_allowed_may_be_touched(void**) {
+  const auto target_distance_m = [](bool holds, bool allows) {
+    Loop loop;
+    loop.sphere.id = 3;
+    loop.sphere.position_m = {loop.target.position_m[0], loop.target.position_m[1], loop.target.position_m[2]};
+    Controller::Obstacle held;
+    held.id = 8;
+    held.size_m = {0.1, 0, 0};
+    assert_true(loop.controller.set_attachments(&held, holds ? 1 : 0, &loop.sphere.id, allows ? 1 : 0, 0.0));
+    loop.run(3.0);
+    return loop.last.target_distance_m;
+  };
+  const double empty_m = target_distance_m(false, false), holding_m = target_distance_m(true, false);
+  check(empty_m > 0.05 && holding_m > empty_m + 0.03, "%g m empty, %g m holding", empty_m, holding_m);
+  const double allowed_m = target_distance_m(true, true);
+  check(allowed_m < empty_m - 0.02, "%g m where contact is allowed, %g m else", allowed_m, empty_m);
+}
+
+void implausible_attachments_are_rejected(void**) {
+  Loop loop;
+  Controller::Obstacle held[17];
+  for (Controller::Obstacle& shape : held) shape.size_m = {0.01, 0, 0};
+  assert_true(loop.controller.set_attachments(held, 16, nullptr, 0, 0.0));
+  assert_false(loop.controller.set_attachments(held, 17, nullptr, 0, 0.0));
+  assert_false(loop.controller.set_attachments(held, -1, nullptr, 0, 0.0));
+  assert_false(loop.controller.set_attachments(nullptr, 0, nullptr, 65, 0.0));
+  held[0].position_m[2] = NAN;
+  assert_false(loop.controller.set_attachments(held, 1, nullptr, 0, 0.0));
+}
+
 void a_pose_is_tracked(void**) {
   Loop loop;
   loop.target.tracks_orientation = true;
@@ -212,6 +243,8 @@ int main() {
       cmocka_unit_test(an_arm_is_paused_resumed_and_slowed),
       cmocka_unit_test(the_arm_keeps_clear_of_all_three_shapes),
       cmocka_unit_test(a_person_at_rest_is_kept_farther_away_than_a_thing),
+      cmocka_unit_test(what_is_held_is_kept_clear_and_what_is_allowed_may_be_touched),
+      cmocka_unit_test(implausible_attachments_are_rejected),
       cmocka_unit_test(a_pose_is_tracked),
       cmocka_unit_test(invalid_inputs_are_rejected_and_the_last_valid_ones_are_used),
       cmocka_unit_test(a_configuration_with_neighbours_is_rejected),

@@ -37,6 +37,8 @@ Inputs ClosedLoop::receive() {
   if (sends_control) sent_control_.send(control, now_s());
   inputs.control = sent_control_.latest;
   inputs.other_joints = sent_others_.latest;
+  if (sends_attachments) sent_attachments_.send(attachments, now_s());
+  inputs.attachments = sent_attachments_.latest;
   return inputs;
 }
 
@@ -78,6 +80,13 @@ bool ClosedLoop::run_until(Mode mode, double limit_s) {
     if (last.report.mode == mode) return true;
   }
   return false;
+}
+
+void ClosedLoop::hold(const std::vector<Obstacle>& shapes_tool) {
+  attachments.shapes.clear();
+  for (const Obstacle& shape : shapes_tool) attachments.shapes.add(shape);
+  place_held_shapes(model.arm, attachments);
+  sends_attachments = true;
 }
 
 Obstacle& ClosedLoop::add_sphere(const Vector3& position_m, const Vector3& velocity_mps, double radius_m) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware/control/cycle.h"
 #include "tests/support/command_check.h"
@@ -30,6 +31,8 @@ class ClosedLoop {
        sends_others = false;  ///< which messages are sent
   Control control;            ///< of the operator
   bool sends_control = false;
+  Attachments attachments;  ///< what the tool holds; its shapes are set through hold()
+  bool sends_attachments = false;
   bool stop = false;
   int skipped = 0;
   int64_t arm_clock_offset_us = 0;
@@ -51,6 +54,9 @@ class ClosedLoop {
   }
   double speed_radps() const { return arm.velocity_radps.norm(); }
 
+  /// The tool holds these shapes, in its frame, from the next cycle on.
+  void hold(const std::vector<Obstacle>& shapes_tool);
+
   /// Adds a sphere and returns it.
   Obstacle& add_sphere(const Vector3& position_m, const Vector3& velocity_mps, double radius_m = 0.05);
 
@@ -68,6 +74,7 @@ class ClosedLoop {
   Sent<ObstacleSet> sent_obstacles_;
   Sent<OtherJoints> sent_others_;
   Sent<Control> sent_control_;
+  Sent<Attachments> sent_attachments_;
 };
 
 /// The LWA3 at home without obstacles, with a target 20 cm away that is not sent yet.

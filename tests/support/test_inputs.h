@@ -31,6 +31,9 @@ class TestInputs {
   bool receive(const void* bytes, size_t size, double now_s, Control& value) {
     return receive_value(bytes, size, now_s, control_, value);
   }
+  bool receive(const void* bytes, size_t size, double now_s, Attachments& value) {
+    return receive_value(bytes, size, now_s, attachments_, value);
+  }
   bool receive(const void* bytes, size_t size, double now_s, ObstacleSet& value) {
     return receive_part(0, bytes, size, now_s, value);
   }
@@ -68,6 +71,7 @@ class TestInputs {
   Received<Target> target_;
   Received<OtherJoints> other_joints_;
   Received<Control> control_;
+  Received<Attachments> attachments_;
   std::unique_ptr<Received<ObstacleSet>> obstacles_ = std::make_unique<Received<ObstacleSet>>();
 };
 

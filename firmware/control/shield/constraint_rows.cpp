@@ -102,7 +102,7 @@ class RowMaker {
         rows_(rows) {}
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
-    const LinkShape &a = input_.arm.shapes[self.first], &b = input_.arm.shapes[self.second];
+    const BodyShape &a = shape(self.first), &b = shape(self.second);
     const auto& links = input_.clearance.links;
     const Proximity pair =
         measure_pair(PosedShape{a, input_.poses, links[self.first]}, PosedShape{b, input_.poses, links[self.second]});
@@ -141,7 +141,7 @@ class RowMaker {
     if (reported.capsule.is_sphere()) return;
     const Vector3 turn_rad = braking_s_ * (angular_velocity(body_of(pair)) - reported.angular_velocity_radps);
     if (turn_rad.norm() < kLeastTurn_rad) return;
-    const PosedShape link{input_.arm.shapes[pair.now.shape], input_.poses, input_.clearance.links[pair.now.shape]};
+    const PosedShape link{shape(pair.now.shape), input_.poses, input_.clearance.links[pair.now.shape]};
     const Obstacle present = input_.obstacles.extrapolated(pair.now.obstacle);
     for (const Proximity& next : proximities_after_turn(link, present, pair.now, turn_rad)) {
       if (next.distance_m > settings_.range_m) continue;
@@ -171,6 +171,8 @@ class RowMaker {
   }
 
  private:
+  const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
+
   /// The time that the arm takes to stop, s.
   static double braking_s(const ShieldInput& input) {
     return (input.last_velocity_radps.array().abs() / input.arm.limits.acceleration_radps2.array()).maxCoeff();
@@ -184,7 +186,7 @@ class RowMaker {
   }
 
   /// Velocity of a point of a shape by the joints outside the chain, m/s.
-  Vector3 other_velocity(const LinkShape& shape, const Vector3& point) const {
+  Vector3 other_velocity(const BodyShape& shape, const Vector3& point) const {
     if (shape.other_joint < 0) return Vector3::Zero();
     return other_velocity_at(input_.arm, input_.poses, shape.other_joint, point);
   }
@@ -197,7 +199,7 @@ class RowMaker {
     if (input_.clearance.near.size() == 0) return speeds_mps;
     for (int s = 0; s < input_.clearance.links.size(); ++s) {
       const Capsule& link = input_.clearance.links[s];
-      const int body = input_.arm.shapes[s].body;
+      const int body = shape(s).body;
       const auto speed_mps = [&](const Vector3& point) {
         return (point_jacobian(input_.poses, body, point) * input_.last_velocity_radps).norm();
       };
@@ -205,7 +207,7 @@ class RowMaker {
     }
     return speeds_mps;
   }
-  int body_of(const NearPair& pair) const { return input_.arm.shapes[pair.now.shape].body; }
+  int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
   /// Returns the bound.
@@ -251,6 +253,8 @@ RowSets make_rows(const ShieldSettings& settings, const ShieldInput& input, cons
   RowSets rows;
   RowMaker maker(settings, input, sustainable, range, rows);
   for (const SelfPair& pair : input.self_pairs) maker.add_self(pair, nominal_radps);
+  if (const Attachments* attachments = input.poses.others->attachments)
+    for_each_held_pair(input.arm, *attachments, [&](const SelfPair& pair) { maker.add_self(pair, nominal_radps); });
   for (const NearPair& pair : input.clearance.near) {
     maker.add_distance(pair);
     maker.add_turning(pair);

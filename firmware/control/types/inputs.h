@@ -4,6 +4,7 @@
 
 #include "firmware/control/types/guide.h"
 #include "firmware/control/types/messages.h"
+#include "firmware/model/attachments.h"
 #include "firmware/model/other_joints.h"
 
 namespace sidestep {
@@ -29,6 +30,7 @@ struct Inputs {
   double foreign_command_s = -HUGE_VAL;  ///< when another controller's command for this arm was last received
   const Guide* guide = nullptr;          ///< from foresight; null without foresight
   Latest<Control> control{};             ///< without: full speed
+  Latest<Attachments> attachments{};     ///< what the tool holds and may touch; without: nothing
   Latest<OtherJoints> other_joints{};    ///< positions of all joints outside the chain; without: Arm::other_positions
 };
 

@@ -93,6 +93,7 @@ void Blackbox::record(const LatestInputs& latest, const RecordedCycle& cycle) {
   record(RecordKind::kTarget, latest.target);
   record(RecordKind::kOtherJoints, latest.other_joints);
   record(RecordKind::kControl, latest.control);
+  record(RecordKind::kAttachments, latest.attachments);
   const Received<ObstacleSet>& obstacles = latest.obstacles;
   const ObstacleSet& set = obstacles.message;
   if (record(RecordKind::kObstacles, obstacles) && (set.remembered > 0 || obstacles.bytes.empty()))

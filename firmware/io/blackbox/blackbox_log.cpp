@@ -76,6 +76,8 @@ class Log {
       write_new(channels_.other_joints, arguments.inputs.other_joints, messages, RecordKind::kOtherJoints);
     if (messages[static_cast<size_t>(RecordKind::kControl)].size > 0)
       write_new(channels_.control, arguments.inputs.control, messages, RecordKind::kControl);
+    if (messages[static_cast<size_t>(RecordKind::kAttachments)].size > 0)
+      write_new(channels_.attachments, arguments.inputs.attachments, messages, RecordKind::kAttachments);
     StepArgumentsImage image;
     to_image(arguments, image);
     write(kStepArgumentsChannel, arguments.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});

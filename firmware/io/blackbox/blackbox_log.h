@@ -12,9 +12,19 @@ namespace sidestep {
 /// Kinds of records in a blackbox's ring. Messages are stored as they came, each before the first cycle that uses it.
 /// kObstacleValues follows an obstacle message whose set the cycles used with other values than the message holds: with
 /// remembered obstacles, or merged from several senders (then the message itself is empty). It is the whole set.
-/// kOtherJoints and kControl are for the readers of a log: the values that the cycles used are among their arguments.
-enum class RecordKind : uint8_t { kArmState, kTarget, kObstacles, kObstacleValues, kOtherJoints, kControl, kCycle };
-constexpr size_t kMessageKinds = 6;
+/// kOtherJoints, kControl and kAttachments are for the readers of a log: the values that the cycles used are among
+/// their arguments.
+enum class RecordKind : uint8_t {
+  kArmState,
+  kTarget,
+  kObstacles,
+  kObstacleValues,
+  kOtherJoints,
+  kControl,
+  kAttachments,
+  kCycle
+};
+constexpr size_t kMessageKinds = 7;
 
 /// One cycle with its result.
 struct RecordedCycle {

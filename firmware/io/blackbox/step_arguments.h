@@ -15,6 +15,7 @@ struct StepArguments {
   State state;
   Guide guide;               ///< what inputs.guide points at, if anything
   Control control;           ///< what inputs.control.message points at, if anything
+  Attachments attachments;   ///< what inputs.attachments.message points at, if anything
   OtherJoints other_joints;  ///< what inputs.other_joints.message points at, if anything
 };
 

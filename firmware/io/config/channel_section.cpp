@@ -18,6 +18,7 @@ void read_channels(YamlSection section, Channels& channels) {
   read_channel(section, "arm_state", channels.arm_state);
   read_channel(section, "other_joints", channels.other_joints);
   read_channel(section, "control", channels.control);
+  read_channel(section, "attachments", channels.attachments);
   read_channel(section, "arm_command", channels.arm_command);
   read_channel(section, "controller_status", channels.controller_status);
   read_channel(section, "loop_timing", channels.loop_timing);

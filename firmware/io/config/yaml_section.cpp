@@ -199,8 +199,8 @@ std::string YamlSection::choice(const std::string& key, const std::vector<std::s
 Eigen::VectorXd YamlSection::numbers(const std::string& key, int lowest_count, int highest_count, NumberRange range) {
   require(key);
   const YAML::Node node = take(key);
-  const size_t count = node.IsSequence() ? node.size() : 0;
-  if (count < static_cast<size_t>(lowest_count) || count > static_cast<size_t>(highest_count)) {
+  const size_t count = node.size();
+  if (!node.IsSequence() || count < static_cast<size_t>(lowest_count) || count > static_cast<size_t>(highest_count)) {
     const std::string counts = lowest_count == highest_count ? fmt::format("{}", lowest_count)
                                                              : fmt::format("{} to {}", lowest_count, highest_count);
     fail(key, fmt::format("must be a list of {} numbers", counts));

@@ -13,6 +13,7 @@ struct Channels {
   std::string arm_state = "ARM_STATE";
   std::string other_joints = "OTHER_JOINTS";
   std::string control = "CONTROL";
+  std::string attachments = "ATTACHMENTS";
   std::string arm_command = "ARM_COMMAND";
   std::string controller_status = "CONTROLLER_STATUS";
   std::string loop_timing = "LOOP_TIMING";

@@ -13,6 +13,7 @@ namespace sidestep {
 namespace {
 
 constexpr size_t kLongestText = 200;
+constexpr const char* kHeldObject = "held object";
 
 void copy(const Vector3& from, double* to) {
   Eigen::Map<Vector3>(to, 3) = from;
@@ -66,10 +67,13 @@ Packet Encoder::encode(const Command& command, int64_t utime, int64_t seq) {
 Packet Encoder::encode(const Report& report, const CycleRecord& record) {
   controller_status_t& message = messages_->status;
   const auto copy_link = [&](int shape, std::string& name) {
+    const auto s = static_cast<size_t>(shape);
     if (shape < 0)
       name.clear();
+    else if (s < messages_->shape_links.size())
+      name = messages_->shape_links[s];
     else
-      name = messages_->shape_links[static_cast<size_t>(shape)];
+      name = kHeldObject;
   };
   message.utime = record.utime;
   message.seq = record.seq;

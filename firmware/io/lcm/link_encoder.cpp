@@ -8,12 +8,15 @@ Packet LinkEncoder::encode(const ArmState& arm, const OtherFrames& others, int64
   const LinkPoses poses = forward_kinematics(arm_, arm.position_rad, others);
   encoder_.begin(utime);
   int id = 0;
-  for (const LinkShape& shape : arm_.shapes) {
-    if (shape.below_arm) continue;
+  const auto add = [&](const BodyShape& shape) {
     Obstacle link = transformed(world_from_base_, link_obstacle(poses, shape, arm.velocity_radps));
     link.id = id++;
     encoder_.add(link);
-  }
+  };
+  for (const LinkShape& shape : arm_.shapes)
+    if (!shape.below_arm) add(shape);
+  if (others.attachments)
+    for (const BodyShape& shape : others.attachments->held) add(shape);
   return encoder_.finish();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sidestep/attachments_t.hpp>
 #include <sidestep/control_t.hpp>
 #include <sidestep/named_joints_t.hpp>
 #include <sidestep/obstacles_t.hpp>
@@ -65,6 +66,16 @@ Quaternion quaternion(const double* wxyz) {
   return Quaternion(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
 }
 
+Obstacle obstacle_of(const obstacle_t& from) {
+  Obstacle to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position), quaternion(from.quaternion),
+                                  vector(from.size));
+  to.id = from.id;
+  to.kind = static_cast<Kind>(from.kind);
+  to.velocity_mps = vector(from.velocity);
+  to.angular_velocity_radps = vector(from.angular_velocity);
+  return to;
+}
+
 }  // namespace
 
 /// Decoded messages; their vectors keep their capacity from one message to the next.
@@ -73,11 +84,14 @@ struct MessageDecoder::Scratch {
   std::unique_ptr<ArmCodec> arm;
   target_t target;
   obstacles_t obstacles;
+  attachments_t attachments;
 };
 
 MessageDecoder::MessageDecoder(const Dialect& dialect, const Arm& arm)
-    : scratch_(new Scratch{arm, dialect.make_codec(arm.joints), {}, {}}) {
+    : scratch_(new Scratch{arm, dialect.make_codec(arm.joints), {}, {}, {}}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
+  scratch_->attachments.shapes.reserve(kMaxHeldShapes);
+  scratch_->attachments.allowed.reserve(kMaxAllowed);
 }
 
 MessageDecoder::~MessageDecoder() = default;
@@ -151,15 +165,31 @@ const char* MessageDecoder::decode(Packet packet, ObstacleSet& obstacles, int64_
   obstacles.count = static_cast<int>(count);
   obstacles.remembered = 0;
   for (int i = 0; i < obstacles.count; ++i) {
-    const obstacle_t& from = message.obstacles[static_cast<size_t>(i)];
-    Obstacle& to = obstacles.obstacles[static_cast<size_t>(i)];
-    to = reported_obstacle(static_cast<Shape>(from.shape), vector(from.position), quaternion(from.quaternion),
-                           vector(from.size));
-    to.id = from.id;
-    to.kind = static_cast<Kind>(from.kind);
-    to.velocity_mps = vector(from.velocity);
-    to.angular_velocity_radps = vector(from.angular_velocity);
+    const auto k = static_cast<size_t>(i);
+    obstacles.obstacles[k] = obstacle_of(message.obstacles[k]);
   }
+  return nullptr;
+}
+
+const char* MessageDecoder::decode(Packet packet, Attachments& attachments) {
+  if (!has_fingerprint<attachments_t>(packet)) return "attachments of another type";
+  const int64_t shapes = count_of(packet);
+  if (shapes < 0 || shapes > kMaxHeldShapes) return "attachments with an impossible count of shapes";
+  const size_t before_allowed = kHeaderBytes + kCountBytes + static_cast<size_t>(shapes) * kObstacleBytes;
+  if (packet.size < before_allowed + kCountBytes) return "attachments of wrong size";
+  const auto allowed = static_cast<int32_t>(big_endian(packet.bytes + before_allowed, kCountBytes));
+  if (allowed < 0 || allowed > kMaxAllowed) return "attachments with an impossible count of allowed obstacles";
+  if (packet.size != before_allowed + kCountBytes + static_cast<size_t>(allowed) * sizeof(int32_t))
+    return "attachments of wrong size";
+  attachments_t& message = scratch_->attachments;
+  if (message.decode(packet.bytes, 0, static_cast<int>(packet.size)) < 0) return "attachments that do not decode";
+  attachments.utime = message.utime;
+  attachments.shapes.clear();
+  attachments.allowed.clear();
+  attachments.held.clear();
+  // The generated decoder leaves a list of no elements as it was.
+  for (size_t i = 0; i < static_cast<size_t>(shapes); ++i) attachments.shapes.add(obstacle_of(message.shapes[i]));
+  for (size_t i = 0; i < static_cast<size_t>(allowed); ++i) attachments.allowed.add(message.allowed[i]);
   return nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include "firmware/io/lcm/dialect.h"
 #include "firmware/io/lcm/message_bytes.h"
 #include "firmware/model/arm.h"
+#include "firmware/model/attachments.h"
 
 namespace sidestep {
 
@@ -29,6 +30,7 @@ class MessageDecoder {
   const char* decode(Packet packet, Target& target);
   const char* decode(Packet packet, Control& control);
   const char* decode(Packet packet, ObstacleSet& obstacles, int64_t& utime);
+  const char* decode(Packet packet, Attachments& attachments);
   /// Fills the positions of the named joints. Joints that the arm does not know are skipped: a sender may report all
   /// joints of a robot. A message that names none of the arm's is wrong.
   const char* decode(Packet packet, OtherJoints& joints);

@@ -55,6 +55,10 @@ bool NetworkInputs::receive(Packet packet, double now_s, Received<Control>& rece
   return receive_value(packet, now_s, received);
 }
 
+bool NetworkInputs::receive(Packet packet, double now_s, Received<Attachments>& received) {
+  return receive_value(packet, now_s, received);
+}
+
 bool NetworkInputs::receive_obstacles(size_t part, Packet packet, double now_s, Received<ObstacleSet>& received) {
   ObstacleMerger* merger = parts_->merger.get();
   ObstacleSet& set = merger ? merger->draft(part) : received.message;

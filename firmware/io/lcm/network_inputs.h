@@ -33,6 +33,7 @@ class NetworkInputs {
   bool receive(Packet packet, double now_s, Received<Target>& received);
   bool receive(Packet packet, double now_s, Received<OtherJoints>& received);
   bool receive(Packet packet, double now_s, Received<Control>& received);
+  bool receive(Packet packet, double now_s, Received<Attachments>& received);
   /// part 0: the own channel; part k: the k-th neighbour, from 1.
   bool receive_obstacles(size_t part, Packet packet, double now_s, Received<ObstacleSet>& received);
 

@@ -30,6 +30,7 @@ struct LatestInputs {
   const Received<ObstacleSet>& obstacles;
   const Received<OtherJoints>& other_joints;
   const Received<Control>& control;
+  const Received<Attachments>& attachments;
 };
 
 }  // namespace sidestep

@@ -120,6 +120,9 @@ void Wire::on_other_joints(PacketHandler handler) {
 void Wire::on_control(PacketHandler handler) {
   network_->subscribe(network_->channels.control, std::move(handler));
 }
+void Wire::on_attachments(PacketHandler handler) {
+  network_->subscribe(network_->channels.attachments, std::move(handler));
+}
 void Wire::on_neighbour(size_t k, PacketHandler handler) {
   network_->subscribe(network_->neighbours.listen[k], std::move(handler));
 }

@@ -38,6 +38,7 @@ class Wire {
   void on_obstacles(PacketHandler handler);
   void on_other_joints(PacketHandler handler);
   void on_control(PacketHandler handler);
+  void on_attachments(PacketHandler handler);
   /// Links of the k-th neighbour, k from 0.
   void on_neighbour(size_t k, PacketHandler handler);
   /// Commands on the own command channel that another process has sent. In lockstep all controllers of an arm answer

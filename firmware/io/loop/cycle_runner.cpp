@@ -35,6 +35,11 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
     arguments.other_joints = latest.other_joints.message;
     arguments.inputs.other_joints.message = &arguments.other_joints;
   }
+  if (latest.attachments.count > 0) {
+    arguments.inputs.attachments = latest.attachments.latest();
+    arguments.attachments = latest.attachments.message;
+    arguments.inputs.attachments.message = &arguments.attachments;
+  }
   if (latest.control.count > 0) {
     arguments.inputs.control = latest.control.latest();
     arguments.control = latest.control.message;
@@ -54,8 +59,7 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
   const AcceptedArmState& arm = state_.arm_monitor.accepted;
   const bool arm_fresh = trigger.now_s - arm.received_s <= model_.settings.timeouts.arm_state_s;
   if (state_.arm_monitor.count > 0 && arm_fresh)
-    wire_.publish(arm.state, present_other_joints(model_, arguments.inputs.other_joints, trigger.now_s),
-                  arguments.utime);
+    wire_.publish(arm.state, present_others(model_, arguments.inputs, trigger.now_s), arguments.utime);
 
   cycle.report = result.report;
   cycle.report.limiting |= degraded_ | (blackbox_.failed() ? kLimitingNoBlackbox : kLimitingNothing);

@@ -27,6 +27,7 @@ class Lockstep {
     wire_.on_control([this, &requests](Packet packet) {
       if (receive(control_, packet) && control_.newest().message.command == ControlCommand::kStop) requests.stop = true;
     });
+    wire_.on_attachments([this](Packet packet) { receive(attachments_, packet); });
     wire_.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     wire_.on_foreign_command(true, [this] { foreign_command_s_ = now_s_; });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
@@ -92,7 +93,7 @@ class Lockstep {
     trigger.rejected_messages = inputs_.rejected();
     trigger.rejected_reason = inputs_.last_reason();
     runner_.run({arm_.take(now_s_), target_.take(now_s_), obstacles_->take(now_s_), other_joints_.take(now_s_),
-                 control_.take(now_s_)},
+                 control_.take(now_s_), attachments_.take(now_s_)},
                 trigger);
   }
 
@@ -105,6 +106,7 @@ class Lockstep {
   Pending<Target> target_;
   Pending<OtherJoints> other_joints_;
   Pending<Control> control_;
+  Pending<Attachments> attachments_;
   std::unique_ptr<Pending<ObstacleSet>> obstacles_;
   double now_s_ = 0.0;  ///< of the last cycle
   double foreign_command_s_ = -HUGE_VAL;

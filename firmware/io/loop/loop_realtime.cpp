@@ -29,6 +29,7 @@ class Receiver {
     wire.on_target([this](Packet packet) { receive(target, packet); });
     wire.on_other_joints([this](Packet packet) { receive(other_joints, packet); });
     wire.on_control([this, &requests](Packet packet) { receive_control(packet, requests); });
+    wire.on_attachments([this](Packet packet) { receive(attachments, packet); });
     wire.on_obstacles([this](Packet packet) { receive_obstacles(0, packet); });
     for (size_t k = 0; k < config.neighbours.listen.size(); ++k)
       wire.on_neighbour(k, [this, k](Packet packet) { receive_obstacles(k + 1, packet); });
@@ -48,6 +49,7 @@ class Receiver {
   TripleBuffer<Received<ObstacleSet>> obstacles;
   TripleBuffer<Received<OtherJoints>> other_joints;
   TripleBuffer<Received<Control>> control;
+  TripleBuffer<Received<Attachments>> attachments;
   std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
@@ -112,12 +114,14 @@ class Loop {
 
  private:
   void cycle(double now_s, double late_s, int skipped, bool stop) {
-    const LatestInputs latest{receiver_.arm.latest(), receiver_.target.latest(), receiver_.obstacles.latest(),
-                              receiver_.other_joints.latest(), receiver_.control.latest()};
+    const LatestInputs latest{receiver_.arm.latest(),       receiver_.target.latest(),
+                              receiver_.obstacles.latest(), receiver_.other_joints.latest(),
+                              receiver_.control.latest(),   receiver_.attachments.latest()};
     CycleRunner::CycleTrigger trigger;
     // A message received after waking and before this line counts as received now.
-    trigger.now_s = std::max({now_s, latest.arm.received_s, latest.target.received_s, latest.obstacles.received_s,
-                              latest.other_joints.received_s, latest.control.received_s});
+    trigger.now_s =
+        std::max({now_s, latest.arm.received_s, latest.target.received_s, latest.obstacles.received_s,
+                  latest.other_joints.received_s, latest.control.received_s, latest.attachments.received_s});
     trigger.utime = static_cast<int64_t>(trigger.now_s * 1e6);
     trigger.skipped_cycles = skipped;
     trigger.wake_latency_s = late_s;

@@ -137,11 +137,11 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
     fail("{}: {} joints from '{}' to '{}', at least {} are needed", urdf_file, arm.joints, base, tip, kMinJoints);
   if (arm.shapes.empty())
     fail("{}: no link from '{}' to '{}' has collision geometry, so nothing could be kept clear", urdf_file, base, tip);
-  if (arm.shapes.size() > static_cast<size_t>(kMaxShapes))
+  if (arm.shapes.size() > static_cast<size_t>(kMaxLinkShapes))
     fail(
         "{}: {} collision shapes from '{}' to '{}', at most {} are possible: fewer capsules_per_mesh, or fewer "
         "joint_positions of joints below the arm, leave shapes out",
-        urdf_file, arm.shapes.size(), base, tip, kMaxShapes);
+        urdf_file, arm.shapes.size(), base, tip, kMaxLinkShapes);
   return arm;
 }
 

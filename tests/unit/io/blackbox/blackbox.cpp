@@ -45,6 +45,7 @@ struct RecordedRun {
   Received<Target> target;
   Received<OtherJoints> other_joints;
   Received<Control> control;
+  Received<Attachments> attachments;
   std::unique_ptr<Received<ObstacleSet>> obstacles = std::make_unique<Received<ObstacleSet>>();
   State state;
   ArmState now{0, test::home_rad(), JointVector::Zero(7)};  ///< follows the commands
@@ -95,7 +96,7 @@ struct RecordedRun {
     const Packet status = encoder.encode(recorded.report, recorded.record);
     statuses.emplace_back(status.bytes, status.bytes + status.size);
     const int64_t before = test::allocation_count();
-    blackbox->record({arm, target, *obstacles, other_joints, control}, recorded);
+    blackbox->record({arm, target, *obstacles, other_joints, control, attachments}, recorded);
     assert_int_equal(test::allocation_count() - before, 0);
   }
 

@@ -1,3 +1,4 @@
+#include <sidestep/attachments_t.hpp>
 #include <sidestep/control_t.hpp>
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
@@ -80,6 +81,16 @@ Fingerprint obstacles() {
       .nest(obstacle().value());
 }
 
+Fingerprint attachments() {
+  return Fingerprint()
+      .add("utime", "int64_t")
+      .add("num_shapes", "int32_t")
+      .add("shapes", "obstacle_t", {"num_shapes"})
+      .add("num_allowed", "int32_t")
+      .add("allowed", "int32_t", {"num_allowed"})
+      .nest(obstacle().value());
+}
+
 Fingerprint joint_state() {
   return Fingerprint()
       .add("utime", "int64_t")
@@ -142,6 +153,7 @@ void layouts_have_the_published_fingerprints(void**) {
       {"joint_state_t", sidestep::joint_state_t::getHash(), joint_state().value(), 0x1806be37545e7d3f},
       {"named_joints_t", sidestep::named_joints_t::getHash(), named_joints().value(), 0xb369b291b5836948},
       {"joint_command_t", sidestep::joint_command_t::getHash(), joint_command().value(), 0xbc0ffe2927412bea},
+      {"attachments_t", sidestep::attachments_t::getHash(), attachments().value(), 0xe5286cfa7e9c4ff3},
       {"control_t", sidestep::control_t::getHash(), control().value(), 0x7686d491d38e67bc},
       {"controller_status_t", sidestep::controller_status_t::getHash(), controller_status().value(),
        0xef5f88d512318560},

@@ -120,9 +120,9 @@ void at_most_64_shapes_count_after_those_inside_others_are_removed(void**) {
     return scratch_file("spheres.urdf",
                         replaced(tower(6), "<link name='l6'/>", "<link name='l6'>" + shapes + "</link>"));
   };
-  assert_string_equal(error_of(with_spheres(kMaxShapes - 1, 0.3), "l0", "l6").c_str(), "");
-  check(one_line_with(error_of(with_spheres(kMaxShapes, 0.3), "l0", "l6"),
-                      {"spheres.urdf", std::to_string(kMaxShapes + 1)}),
+  assert_string_equal(error_of(with_spheres(kMaxLinkShapes - 1, 0.3), "l0", "l6").c_str(), "");
+  check(one_line_with(error_of(with_spheres(kMaxLinkShapes, 0.3), "l0", "l6"),
+                      {"spheres.urdf", std::to_string(kMaxLinkShapes + 1)}),
         "one too many");
   // 200 equal spheres are reduced to one.
   assert_int_equal(load_arm(with_spheres(200, 0.0), "l0", "l6").shapes.size(), 2);
