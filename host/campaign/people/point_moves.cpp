@@ -1,0 +1,22 @@
+#include "host/campaign/people/point_moves.h"
+
+#include <algorithm>
+
+namespace sidestep::campaign {
+
+void PointMoves::move_to(const Eigen::Vector3d& point_m, double duration_s) {
+  moves_.push_back({end_s_, duration_s, point_m});
+  end_s_ += duration_s;
+}
+
+Eigen::Vector3d PointMoves::at(double t_s) const {
+  Eigen::Vector3d point_m = start_m_;
+  for (const Move& move : moves_) {
+    if (t_s <= move.begin_s) break;
+    const double u = std::min(1.0, (t_s - move.begin_s) / move.duration_s);
+    point_m += u * u * u * (10.0 + u * (-15.0 + u * 6.0)) * (move.to_m - point_m);
+  }
+  return point_m;
+}
+
+}  // namespace sidestep::campaign
