@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <tuple>
 
@@ -40,9 +43,23 @@ constexpr std::array<Column, 20> kColumns{{
     {"self_clearance_m", &TrialMetrics::self_clearance_m},
 }};
 
-std::string header() {
+/// Only in files with families of people.
+constexpr std::array<Column, 4> kPeopleColumns{{
+    {"rest_clearance_m", &TrialMetrics::rest_clearance_m},
+    {"closing_mps", &TrialMetrics::closing_mps},
+    {"way_out", &TrialMetrics::way_out},
+    {"late_way_out", &TrialMetrics::late_way_out},
+}};
+
+std::vector<Column> columns_of(bool people) {
+  std::vector<Column> columns(kColumns.begin(), kColumns.end());
+  if (people) columns.insert(columns.end(), kPeopleColumns.begin(), kPeopleColumns.end());
+  return columns;
+}
+
+std::string header(bool people) {
   std::string line = "family,law,seed";
-  for (const Column& column : kColumns) line += fmt::format(",{}", column.name);
+  for (const Column& column : columns_of(people)) line += fmt::format(",{}", column.name);
   return line;
 }
 
@@ -64,13 +81,37 @@ Number to_number(const std::string& text) {
   return number;
 }
 
-Row to_row(const std::string& line) {
+Row to_row(const std::string& line, const std::vector<Column>& columns) {
   const std::vector<std::string> cells = split(line);
-  if (cells.size() != kColumns.size() + 3)
-    throw std::runtime_error(fmt::format("{} values instead of {}", cells.size(), kColumns.size() + 3));
+  if (cells.size() != columns.size() + 3)
+    throw std::runtime_error(fmt::format("{} values instead of {}", cells.size(), columns.size() + 3));
   Row row{&family_named(cells[0]), cells[1], to_number<uint64_t>(cells[2]), {}};
-  for (size_t i = 0; i < kColumns.size(); ++i) row.metrics.*kColumns[i].value = to_number<double>(cells[i + 3]);
+  for (size_t i = 0; i < columns.size(); ++i) row.metrics.*columns[i].value = to_number<double>(cells[i + 3]);
   return row;
+}
+
+std::string to_line(const Row& row, const std::vector<Column>& columns) {
+  std::string line = fmt::format("{},{},{}", row.family->name, row.law, row.seed);
+  for (const Column& column : columns) line += fmt::format(",{}", row.metrics.*column.value);
+  return line;
+}
+
+std::vector<Row> read_rows(std::istream& stream, const std::string& file) {
+  std::string line;
+  std::getline(stream, line);
+  const bool people = line == header(true);
+  if (!people && line != header(false))
+    throw std::runtime_error(fmt::format("{}: not a CSV file of campaign trials", file));
+  const std::vector<Column> columns = columns_of(people);
+  std::vector<Row> rows;
+  for (int number = 2; std::getline(stream, line); ++number) {
+    try {
+      rows.push_back(to_row(line, columns));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(fmt::format("{}:{}: {}", file, number, error.what()));
+    }
+  }
+  return rows;
 }
 
 auto key(const Row& row) {
@@ -79,32 +120,51 @@ auto key(const Row& row) {
 
 }  // namespace
 
+CsvWriter::CsvWriter(const std::string& file, bool people) : file_(file), people_(people), stream_(file) {
+  stream_ << header(people) << '\n';
+  flush();
+}
+
+void CsvWriter::add(const Row& row) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stream_ << to_line(row, columns_of(people_)) << '\n';
+  flush();
+}
+
+void CsvWriter::flush() {
+  stream_.flush();
+  if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be written", file_));
+}
+
 void write_csv(const std::string& file, const std::vector<Row>& rows) {
-  std::ofstream stream(file);
-  stream << header() << '\n';
-  for (const Row& row : rows) {
-    stream << fmt::format("{},{},{}", row.family->name, row.law, row.seed);
-    for (const Column& column : kColumns) stream << fmt::format(",{}", row.metrics.*column.value);
-    stream << '\n';
-  }
-  stream.close();
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+  CsvWriter writer(file,
+                   std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.family->has_people(); }));
+  for (const Row& row : rows) writer.add(row);
 }
 
 std::vector<Row> read_csv(const std::string& file) {
   std::ifstream stream(file);
-  std::string line;
-  if (!stream || !std::getline(stream, line)) throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  if (line != header()) throw std::runtime_error(fmt::format("{}: not a CSV file of campaign trials", file));
-  std::vector<Row> rows;
-  for (int number = 2; std::getline(stream, line); ++number) {
-    try {
-      rows.push_back(to_row(line));
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(fmt::format("{}:{}: {}", file, number, error.what()));
-    }
-  }
-  return rows;
+  if (!stream || stream.peek() == std::ifstream::traits_type::eof())
+    throw std::runtime_error(fmt::format("{}: cannot be read", file));
+  return read_rows(stream, file);
+}
+
+std::vector<Row> read_interrupted_csv(const std::string& file) {
+  std::ifstream stream(file);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file));
+  text.resize(text.rfind('\n') + 1);  // 0 without any
+  std::istringstream lines(text);
+  return text.empty() ? std::vector<Row>{} : read_rows(lines, file);
+}
+
+bool same_result(const Row& a, const Row& b) {
+  const std::vector<Column> columns = columns_of(true);
+  return std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
+    const double x = a.metrics.*column.value, y = b.metrics.*column.value;
+    const bool is_cpu = std::string(column.name).rfind("cpu", 0) == 0;
+    return is_cpu || x == y || (std::isnan(x) && std::isnan(y));
+  });
 }
 
 void sort_rows(std::vector<Row>& rows) {

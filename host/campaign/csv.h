@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fstream>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -16,9 +18,36 @@ struct Row {
   TrialMetrics metrics;
 };
 
-/// Written numbers are read back as the same bits. Both functions throw std::runtime_error, one line with the file.
+/// Writes trials as they end, a line each. Written numbers are read back as the same bits. All functions throw
+/// std::runtime_error, one line with the file.
+class CsvWriter {
+ public:
+  /// Replaces the file by one without rows. people: with the columns of families of people, which other families leave
+  /// at nan.
+  CsvWriter(const std::string& file, bool people);
+
+  /// May be called from several threads.
+  void add(const Row& row);
+
+ private:
+  void flush();
+
+  std::string file_;
+  bool people_;
+  std::ofstream stream_;
+  std::mutex mutex_;
+};
+
+/// The columns of people only if a row is of such a family.
 void write_csv(const std::string& file, const std::vector<Row>& rows);
+
 std::vector<Row> read_csv(const std::string& file);
+
+/// The same of a file whose writer may have been killed: a last line without end is ignored.
+std::vector<Row> read_interrupted_csv(const std::string& file);
+
+/// Whether two rows of the same trial are equal, CPU times excepted.
+bool same_result(const Row& a, const Row& b);
 
 /// Sorts by law, family (in the order of the tables) and seed. Throws std::runtime_error if a trial occurs twice.
 void sort_rows(std::vector<Row>& rows);

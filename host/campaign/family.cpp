@@ -36,6 +36,18 @@ std::vector<Family> make_families() {
   for (double speed_mps : {0.1, 0.25, 0.5, 1.0, 2.0}) add_dodge("dodge", 1, speed_mps, false);
   for (double speed_mps : {0.5, 1.0}) add_dodge("dodge3", 3, speed_mps, false);
   for (double speed_mps : {0.1, 0.25, 0.5, 1.0, 2.0}) add_dodge("dodge6d", 1, speed_mps, true);
+  const auto add_people = [&all](const std::string& stream, People people) {
+    for (const bool camera : {false, true}) {
+      Family family{camera ? stream + "@camera" : stream, stream, 0, 0.0};
+      family.people = people;
+      family.camera = camera;
+      all.push_back(family);
+    }
+  };
+  add_people("walk-by", People::kWalkBy);
+  add_people("reach-in", People::kReachIn);
+  add_people("gesture", People::kGesture);
+  add_people("two-people", People::kTwo);
   return all;
 }
 
@@ -48,9 +60,11 @@ const std::vector<Family>& families() {
 
 std::vector<const Family*> families_of(const std::string& word) {
   std::vector<const Family*> chosen;
-  std::string known = "all, dodge";
+  std::string known = "all, dodge, people";
   for (const Family& family : families()) {
-    if (word == "all" || word == family.name || (word == "dodge" && family.dodge)) chosen.push_back(&family);
+    if (word == "all" || word == family.name || (word == "dodge" && family.dodge) ||
+        (word == "people" && family.has_people()))
+      chosen.push_back(&family);
     known += ", " + family.name;
   }
   if (chosen.empty()) throw std::runtime_error(fmt::format("no family '{}'; the families are {}", word, known));

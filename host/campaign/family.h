@@ -5,6 +5,9 @@
 
 namespace sidestep::campaign {
 
+/// What the persons of a scene do.
+enum class People { kNone, kWalkBy, kReachIn, kGesture, kTwo };
+
 /// A kind of scene.
 struct Family {
   std::string name;
@@ -17,6 +20,10 @@ struct Family {
   bool real = false;       ///< noise, delay and loss in the obstacle measurements, lag in the arm
   bool dodge = false;      ///< the task is to hold the tool while all obstacles fly through the arm at once
   bool hold_orientation = false;  ///< with dodge: the task includes the tool's orientation
+  People people = People::kNone;  ///< not kNone: the obstacles are the capsules of one person or two
+  bool camera = false;            ///< with people: a camera sees them, late, with noise and loss
+
+  bool has_people() const { return people != People::kNone; }
 };
 
 /// All families, in the order of the tables.
@@ -25,8 +32,8 @@ const std::vector<Family>& families();
 /// Throws std::runtime_error if there is no such family.
 const Family& family_named(const std::string& name);
 
-/// The families that a value of `--family` selects: a family's name, `dodge` for all its variants, or `all`. Throws
-/// like family_named().
+/// The families that a value of `--family` selects: a family's name, `dodge` or `people` for all of theirs, or `all`.
+/// Throws like family_named().
 std::vector<const Family*> families_of(const std::string& word);
 
 }  // namespace sidestep::campaign

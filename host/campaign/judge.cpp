@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kNear_m = 0.15;      // more than the arm and an obstacle can close in one period
 constexpr double kSelfNear_m = 0.05;  // the same for two links
+constexpr int kPeopleChecks = 5;      // a hand may move 60 mm in a period
 
 /// The time from which on the witness's tool stays within kArrived_m of its goal.
 double witness_arrival_s(const Scene& scene) {
@@ -26,9 +27,9 @@ Judge::Judge(const Scene& scene, const Joints& qd_radps)
       smoothness_(qd_radps),
       start_rotation_(scene.arm->pose(scene.start_rad).tool_rotation),
       last_rad_(scene.start_rad) {
-  metrics_.obstacles = static_cast<double>(scene.spheres.size());
+  metrics_.obstacles = static_cast<double>(scene.spheres.size() + scene.capsules.size());
   metrics_.duration_s = scene.duration_s();
-  if (scene.family->dodge) return;
+  if (scene.family->dodge || scene.family->has_people()) return;
   metrics_.witness_arrival_s = witness_arrival_s(scene);
   metrics_.witness_path_rad = (scene.goal_rad - scene.start_rad).norm();
 }
@@ -52,7 +53,8 @@ void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_
   near_ = clearance_m < kNear_m;
   metrics_.clearance_m = std::min(metrics_.clearance_m, clearance_m);
   const bool links_near = measure_self_clearance(arm);
-  const int checks = scene_.arm->contact_checks_per_period();
+  const int own = scene_.arm->contact_checks_per_period();
+  const int checks = scene_.family->has_people() ? std::max(own, kPeopleChecks) : own;
   for (int i = 1; i < checks && (near_ || links_near); ++i) {
     const double back = static_cast<double>(i) / checks;
     const ArmPose between = scene_.arm->pose(q_rad + back * (last_rad_ - q_rad));

@@ -49,6 +49,13 @@ class JudgeArm {
   virtual double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                            double within_m = sim::kNothingNear) const = 0;
 
+  /// The same for the nearest of several capsules.
+  virtual double clearance(const ArmPose& pose, const std::vector<Capsule>& capsules,
+                           double within_m = sim::kNothingNear) const = 0;
+
+  /// Capsules that enclose the links, fixed ones included. Much cheaper than pose() and clearance().
+  virtual std::vector<Capsule> enclosing_capsules(const Joints& q_rad) const = 0;
+
   /// Least distance between the surfaces of two links that do not touch by construction; negative (or 0) if they touch.
   /// Returns within_m if the distance is not less. The pairs are the judge's own, not the controller's.
   virtual double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const = 0;

@@ -60,6 +60,24 @@ double Lwa3Arm::clearance(const ArmPose& pose, const Vector3& center_m, double r
   return std::min(within_m, least_m - kLinkRadius_m - radius_m);
 }
 
+double Lwa3Arm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsules, double within_m) const {
+  double least_m = within_m;
+  for (const Capsule& capsule : capsules) {
+    for (size_t i = 0; i < 4; ++i) {
+      const double axes_m = segment_distance(pose.corners[i], pose.corners[i + 1], capsule.start, capsule.end);
+      least_m = std::min(least_m, axes_m - kLinkRadius_m - capsule.radius_m);
+    }
+  }
+  return least_m;
+}
+
+std::vector<Capsule> Lwa3Arm::enclosing_capsules(const Joints& q_rad) const {
+  const ArmPose arm = pose(q_rad);
+  std::vector<Capsule> links;
+  for (size_t i = 0; i < 4; ++i) links.push_back({arm.corners[i], arm.corners[i + 1], kLinkRadius_m});
+  return links;
+}
+
 double Lwa3Arm::self_clearance(const ArmPose& pose, double within_m) const {
   double least_m = within_m;
   for (size_t a = 0; a + 1 < pose.corners.size(); ++a) {
@@ -77,12 +95,13 @@ Limits Lwa3Arm::range() const {
 }
 
 Limits Lwa3Arm::limits(const Family& family) const {
-  return family.dodge ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : range();
+  return family.dodge || family.has_people() ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : range();
 }
 
 ArmSource Lwa3Arm::source(const Family& family) const {
-  return {"urdf/lwa3.urdf", "base_link", "tool",
-          config_name(family.dodge ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml")};
+  return {
+      "urdf/lwa3.urdf", "base_link", "tool",
+      config_name(family.dodge || family.has_people() ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml")};
 }
 
 const JudgeArm& lwa3_arm() {

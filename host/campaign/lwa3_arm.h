@@ -11,6 +11,9 @@ class Lwa3Arm : public JudgeArm {
   ArmPose pose(const Joints& q_rad) const override;
   double clearance(const ArmPose& pose, const Vector3& center_m, double radius_m,
                    double within_m = sim::kNothingNear) const override;
+  double clearance(const ArmPose& pose, const std::vector<Capsule>& capsules,
+                   double within_m = sim::kNothingNear) const override;
+  std::vector<Capsule> enclosing_capsules(const Joints& q_rad) const override;
   /// Of the capsules that share no corner.
   double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const override;
   Limits limits(const Family& family) const override;

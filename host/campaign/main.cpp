@@ -12,7 +12,7 @@
 #include "firmware/io/config/config.h"
 #include "host/campaign/config_name.h"
 #include "host/campaign/problems/problem_table.h"
-#include "host/campaign/runner.h"
+#include "host/campaign/resume.h"
 #include "host/campaign/scene_export.h"
 #include "host/campaign/search/finding_file.h"
 #include "host/campaign/search/search_report.h"
@@ -34,13 +34,14 @@ struct Options {
   int obstacles = 3;
   double fastest_mps = 0.5;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool quiet = false, smoothness = false, no_cpu = false;
+  bool quiet = false, smoothness = false, no_cpu = false, resume = false;
   std::vector<std::string> merge;
 };
 
 void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
-                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, or all")
+                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, people, one of their "
+                 "variants, or all")
       .show_default();
   app.add_option("--count", options.count, "scenes of each family, runs of a search")
       .show_default()
@@ -62,6 +63,9 @@ void declare(CommandLine& app, Options& options) {
       .show_default()
       .type_name("I/N");
   app.add_option("--csv", options.csv, "write one row per trial (or finding) to this file").type_name("FILE");
+  app.add_flag(
+      "--resume", options.resume,
+      "do not run the trials that an interrupted run with the same arguments has written to the file of --csv");
   app.add_option("--jobs", options.jobs, "number of threads").show_default().range(1, 256);
   app.add_flag("--quiet", options.quiet, "print no progress");
   app.add_flag("--smoothness", options.smoothness, "also print how smooth the commands were");
@@ -129,13 +133,30 @@ Config config_of(const Options& options) {
   return load_config(options.config.empty() && options.urdf.empty() ? default_config() : options.config, overrides);
 }
 
+/// Runs the tasks, with --resume those that are not in the file yet. With --csv each row is written as its trial ends.
+std::vector<Row> run_and_record(const std::vector<Task>& tasks, const TestedController& tested,
+                                const Options& options) {
+  if (options.csv.empty()) {
+    if (options.resume) throw std::runtime_error("--resume: --csv is missing");
+    return run(tasks, tested, options.jobs, options.quiet, interrupted);
+  }
+  auto [rows, rest] = options.resume ? resume(options.csv, tasks, tested) : Resumed{{}, tasks};
+  const bool people =
+      std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.family->has_people(); });
+  CsvWriter writer(options.csv, people);  // fails before the trials if the file cannot be written
+  for (const Row& row : rows) writer.add(row);
+  const std::vector<Row> more =
+      run(rest, tested, options.jobs, options.quiet, interrupted, [&writer](const Row& row) { writer.add(row); });
+  rows.insert(rows.end(), more.begin(), more.end());
+  return rows;
+}
+
 int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
-  if (!options.csv.empty()) write_csv(options.csv, {});  // fails before the trials if the file cannot be written
   const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm};
-  const std::vector<Row> rows = run(tasks, tested, options.jobs, options.quiet, interrupted);
+  const std::vector<Row> rows = run_and_record(tasks, tested, options);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;
   fmt::print(stderr, "campaign: interrupted after {} of {} scenes\n", rows.size(), tasks.size());

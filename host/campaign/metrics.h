@@ -28,6 +28,12 @@ struct TrialMetrics {
   double cpu_mean_s = kNone;           ///< CPU time of one cycle
   double cpu_worst_s = kNone;
   double self_clearance_m = std::numeric_limits<double>::infinity();  ///< least between links, if it is below 0.05 m
+
+  // Only among people:
+  double rest_clearance_m = kNone;  ///< least clearance of an arm that stays at the start
+  double closing_mps = kNone;       ///< contact: largest speed at which the arm itself made the clearance smaller
+  double way_out = kNone;           ///< 1: some motion from the start has no contact; 0: none was found
+  double late_way_out = kNone;      ///< contact: the same from the arm's state 0.5 s before the first one
 };
 
 }  // namespace sidestep::campaign

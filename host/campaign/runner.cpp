@@ -26,7 +26,7 @@ uint64_t scene_seed(uint64_t run_seed, uint64_t k) {
 }
 
 std::vector<Row> run(const std::vector<Task>& tasks, const TestedController& tested, int jobs, bool quiet,
-                     const std::atomic<bool>& stop) {
+                     const std::atomic<bool>& stop, const std::function<void(const Row&)>& ended) {
   std::map<const Family*, Model> models;
   for (const Task& task : tasks)
     if (tested.model && models.count(task.family) == 0)
@@ -36,6 +36,7 @@ std::vector<Row> run(const std::vector<Task>& tasks, const TestedController& tes
   run_parallel(tasks.size(), jobs, stop, [&](size_t i) {
     const Model* model = tested.model ? &models.at(tasks[i].family) : nullptr;
     rows[i] = trial(tasks[i], tested, model);
+    if (ended) ended(*rows[i]);
     progress.add(touched(*rows[i]), succeeded(*rows[i]));
   });
   std::vector<Row> finished;

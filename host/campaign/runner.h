@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 
 #include "firmware/control/cycle.h"
 #include "host/campaign/csv.h"
@@ -26,8 +27,8 @@ struct TestedController {
 
 /// Runs all tasks on `jobs` threads. The rows are in the order of the tasks and, except for CPU times, do not depend on
 /// the threads. When `stop` becomes true the trials in progress are finished and the rest is skipped. Progress is
-/// printed on stderr unless quiet.
+/// printed on stderr unless quiet. `ended` is called with each row, from any of the threads.
 std::vector<Row> run(const std::vector<Task>& tasks, const TestedController& tested, int jobs, bool quiet,
-                     const std::atomic<bool>& stop);
+                     const std::atomic<bool>& stop, const std::function<void(const Row&)>& ended = {});
 
 }  // namespace sidestep::campaign

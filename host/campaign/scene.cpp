@@ -21,6 +21,10 @@ Joints witness_radps(const Scene& scene, double t_s) {
 }
 
 PointMotion target_at(const Scene& scene, double t_s) {
+  if (scene.move_s > 0.0) {
+    const int move = std::clamp(static_cast<int>(t_s / scene.move_s), 0, scene.moves - 1);
+    return {scene.arm->pose(move % 2 == 0 ? scene.goal_rad : scene.start_rad).tool(), Vector3::Zero()};
+  }
   if (!scene.family->chase) return {scene.arm->pose(scene.goal_rad).tool(), Vector3::Zero()};
   const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
   return {witness.tool(), tool_jacobian(witness) * witness_radps(scene, t_s)};
@@ -34,11 +38,17 @@ std::optional<OrientationTarget> orientation_target_at(const Scene& scene, doubl
                            tool_angular_velocity(witness, witness_radps(scene, t_s))};
 }
 
+std::vector<Capsule> capsules_at(const Scene& scene, double t_s) {
+  std::vector<Capsule> capsules;
+  for (const CapsulePath& path : scene.capsules) capsules.push_back(path.at(t_s).capsule);
+  return capsules;
+}
+
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
   double least_m = within_m;
   for (const SpherePath& sphere : scene.spheres)
     least_m = scene.arm->clearance(pose, sphere.at(t_s).position_m, kSphereRadius_m, least_m);
-  return least_m;
+  return scene.capsules.empty() ? least_m : scene.arm->clearance(pose, capsules_at(scene, t_s), least_m);
 }
 
 double pass_begins_s(const Scene& scene) {

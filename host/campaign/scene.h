@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/campaign/capsule_path.h"
 #include "host/campaign/family.h"
 #include "host/campaign/judge_arm.h"
 #include "host/campaign/sphere_path.h"
@@ -26,9 +27,14 @@ struct Scene {
   int periods;
   Joints start_rad;
   Joints goal_rad;   ///< end of the witness; in a dodge the same as the start
-  double witness_s;  ///< duration of the witness's motion; 0 in a dodge
+  double witness_s;  ///< duration of the witness's motion; 0 in a dodge and among people, which have none
   std::vector<SpherePath> spheres;
-  double crossing_s = 0.0;  ///< dodge: the time at which the spheres reach the arm's start configuration
+  double crossing_s = 0.0;            ///< dodge: the time at which the spheres reach the arm's start configuration
+  std::vector<CapsulePath> capsules;  ///< of persons
+  /// People: the target is first the tool's position at the goal, then changes moves - 1 times between those at start
+  /// and goal, each time after this duration.
+  double move_s = 0.0;
+  int moves = 1;
 
   double duration_s() const { return periods * kPeriod_s; }
 };
@@ -53,7 +59,10 @@ struct OrientationTarget {
 /// Absent if the task is only a position of the tool.
 std::optional<OrientationTarget> orientation_target_at(const Scene& scene, double t_s);
 
-/// Least clearance between the arm and all spheres at time t. Returns within_m if the clearance is not less.
+/// The capsules of the persons at time t.
+std::vector<Capsule> capsules_at(const Scene& scene, double t_s);
+
+/// Least clearance between the arm and all obstacles at time t. Returns within_m if the clearance is not less.
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
 
 /// Dodge: the pass, the time in which the spheres are within kPassReach_m of their crossing points. The tool's

@@ -78,6 +78,7 @@ std::string export_scene(const Scene& scene) {
   const Family& family = *scene.family;
   if (family.full_pose)
     throw std::runtime_error("--replay: a scenario cannot describe the orientation of a full-pose family's target");
+  if (family.has_people()) throw std::runtime_error("--replay: a scenario cannot describe the motion of a person");
   std::string text = fmt::format("# Written by: build/campaign --replay {}:{}\n", family.name, scene.seed);
   if (family.real)
     text += "# In the benchmark the obstacle messages are noisy, late and incomplete; here they are exact.\n";

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "host/campaign/dodge_maker.h"
+#include "host/campaign/people/people_maker.h"
 #include "host/campaign/plain_tracking.h"
 #include "host/campaign/random.h"
 
@@ -118,7 +119,15 @@ bool draw_spheres(Random& random, Scene& scene) {
   return scene.spheres.size() == wanted;
 }
 
+/// Half of the scenes hold the tool, the others move it between start and goal.
+bool try_people(Random& random, Scene& scene) {
+  scene.start_rad = scene.goal_rad = draw_posture(random, *scene.arm, 0.7, kNoFloor);
+  if (random.uniform(0.0, 1.0) < 0.5) scene.goal_rad = draw_posture(random, *scene.arm, 0.7, kNoFloor);
+  return make_people(random, scene, motion_s(scene)) && plain_tracking_hits(scene);
+}
+
 bool try_scene(Random& random, Scene& scene) {
+  if (scene.family->has_people()) return try_people(random, scene);
   if (scene.family->dodge) return make_dodge(random, scene, draw_posture(random, *scene.arm, 0.7, kNoFloor));
   draw_witness(random, scene);
   return draw_spheres(random, scene) && (scene.spheres.empty() || plain_tracking_hits(scene));
@@ -127,13 +136,17 @@ bool try_scene(Random& random, Scene& scene) {
 }  // namespace
 
 Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
-  Scene scene{&family, seed, &arm, 0, {}, {}, 0.0, {}};
+  Scene scene{};
+  scene.family = &family;
+  scene.seed = seed;
+  scene.arm = &arm;
   Random random(family.stream, seed);
   for (int attempt = 0; attempt < kMostAttempts; ++attempt)
     if (try_scene(random, scene)) return scene;
-  throw std::runtime_error(
-      fmt::format("{}: no scene in {} attempts: no spheres keep clear of the witness and block plain tracking",
-                  family.name, kMostAttempts));
+  throw std::runtime_error(fmt::format("{}: no scene in {} attempts: no {}", family.name, kMostAttempts,
+                                       family.has_people()
+                                           ? "persons touch an arm that does not evade"
+                                           : "spheres keep clear of the witness and block plain tracking"));
 }
 
 }  // namespace sidestep::campaign

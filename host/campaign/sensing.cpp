@@ -5,6 +5,7 @@ namespace {
 
 constexpr double kNoise_m = 0.005, kLoss = 0.10;
 constexpr int64_t kRate_hz = 30, kDelay_us = 40'000;
+static_assert(kRate_hz == Camera::kRate_hz);
 
 Obstacle moving_sphere(const PointMotion& centre) {
   Obstacle obstacle = sphere_obstacle(centre.position_m, kSphereRadius_m);
@@ -14,14 +15,11 @@ Obstacle moving_sphere(const PointMotion& centre) {
 
 }  // namespace
 
-Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed) {}
+Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed), camera_(scene) {}
 
 const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
-  if (!scene_.family->real) {
-    newest_.received_us = now_us;
-    ++newest_.count;
-    newest_.obstacles.clear();
-    for (const SpherePath& sphere : scene_.spheres) newest_.obstacles.push_back(moving_sphere(sphere.at(t_s)));
+  if (!scene_.family->real && !scene_.family->camera) {
+    report_exactly(now_us, t_s);
     return newest_;
   }
   for (int64_t at_us; (at_us = next_capture_ * 1'000'000 / kRate_hz) <= now_us; ++next_capture_)
@@ -34,7 +32,29 @@ const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
   return newest_;
 }
 
+void Sensing::report_exactly(int64_t now_us, double t_s) {
+  newest_.received_us = now_us;
+  ++newest_.count;
+  newest_.obstacles.clear();
+  for (const SpherePath& sphere : scene_.spheres) newest_.obstacles.push_back(moving_sphere(sphere.at(t_s)));
+  for (const CapsulePath& capsule : scene_.capsules) newest_.obstacles.push_back(person_obstacle(capsule.at(t_s)));
+}
+
 void Sensing::capture(int64_t at_us, double t_s) {
+  if (scene_.family->camera)
+    capture_people(at_us, t_s);
+  else
+    capture_spheres(at_us, t_s);
+}
+
+void Sensing::capture_people(int64_t at_us, double t_s) {
+  ObstacleMeasurement measurement;
+  measurement.received_us = at_us + Camera::kDelay_us;
+  if (camera_.capture(static_cast<double>(at_us) / 1e6, t_s, measurement.obstacles))
+    in_transit_.push_back(std::move(measurement));
+}
+
+void Sensing::capture_spheres(int64_t at_us, double t_s) {
   ObstacleMeasurement measurement;
   measurement.received_us = at_us + kDelay_us;
   for (const SpherePath& sphere : scene_.spheres) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "firmware/model/obstacle.h"
+#include "host/campaign/people/camera.h"
 #include "host/campaign/random.h"
 #include "host/campaign/scene.h"
 
@@ -17,7 +18,7 @@ struct ObstacleMeasurement {
 };
 
 /// Model of the obstacle sensor. Family real: 30 sets a second, 40 ms old, positions with noise, one set in ten is
-/// lost. Other families: the exact set in every cycle.
+/// lost. Families with a camera: people/camera.h. Other families: the exact set in every cycle.
 class Sensing {
  public:
   explicit Sensing(const Scene& scene);
@@ -27,11 +28,15 @@ class Sensing {
   const ObstacleMeasurement& newest_at(int64_t now_us, double t_s);
 
  private:
+  void report_exactly(int64_t now_us, double t_s);
   void capture(int64_t at_us, double t_s);
+  void capture_spheres(int64_t at_us, double t_s);
+  void capture_people(int64_t at_us, double t_s);
 
   const Scene& scene_;
   Random random_;
-  int64_t next_capture_ = 0;  ///< number of the next capture; family real only
+  Camera camera_;
+  int64_t next_capture_ = 0;  ///< number of the next capture; not with exact sets
   std::deque<ObstacleMeasurement> in_transit_;
   ObstacleMeasurement newest_;
 };

@@ -39,9 +39,38 @@ Sample successes(const Sample& sample) {
   return result;
 }
 
+bool touched_avoidably(const Row& row) {
+  return row.metrics.clearance_m < 0.0 && row.metrics.way_out > 0.0;
+}
+bool touched_avoidably_late(const Row& row) {
+  return row.metrics.clearance_m < 0.0 && row.metrics.late_way_out > 0.0;
+}
+bool touched_deeper_than_at_rest(const Row& row) {
+  constexpr double kDeeper_m = 1e-3;
+  return row.metrics.clearance_m < std::min(0.0, row.metrics.rest_clearance_m) - kDeeper_m;
+}
+bool touched_at_rest(const Row& row) {
+  return row.metrics.rest_clearance_m < 0.0;
+}
+
 double percent(const Sample& sample, bool (*holds)(const Row&)) {
   return 100.0 * static_cast<double>(std::count_if(sample.begin(), sample.end(), holds)) /
          static_cast<double>(sample.size());
+}
+
+// E. B. Wilson, "Probable inference, the law of succession, and statistical inference", 1927.
+Interval wilson_interval(double successes, double trials) {
+  constexpr double kZ = 1.959963984540054;
+  const double share = successes / trials, z2 = kZ * kZ / trials;
+  const double middle = share + 0.5 * z2;
+  const double half = kZ * std::sqrt(share * (1.0 - share) / trials + 0.25 * z2 / trials);
+  const double scale = 100.0 / (1.0 + z2);
+  return {std::max(0.0, scale * (middle - half)), std::min(100.0, scale * (middle + half))};
+}
+
+Interval confidence(const Sample& sample, bool (*holds)(const Row&)) {
+  return wilson_interval(static_cast<double>(std::count_if(sample.begin(), sample.end(), holds)),
+                         static_cast<double>(sample.size()));
 }
 
 double mean(const Sample& sample, double TrialMetrics::*value) {

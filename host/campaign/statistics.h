@@ -21,8 +21,26 @@ bool succeeded(const Row& row);
 
 Sample successes(const Sample& sample);
 
+/// Among people: the arm touched a person although a motion without contact exists, from the start or still from the
+/// arm's state 0.5 s before.
+bool touched_avoidably(const Row& row);
+bool touched_avoidably_late(const Row& row);
+/// Among people: the arm touched a person, and deeper than an arm that stays at the start would have, by 1 mm or more.
+bool touched_deeper_than_at_rest(const Row& row);
+/// An arm that stays at the start is touched.
+bool touched_at_rest(const Row& row);
+
 /// Share of the trials that satisfy a condition, %.
 double percent(const Sample& sample, bool (*holds)(const Row&));
+
+/// Bounds of a share, %.
+struct Interval {
+  double lower, upper;
+};
+
+/// The 95 % confidence interval of the share of trials that satisfy a condition (Wilson's score interval).
+Interval confidence(const Sample& sample, bool (*holds)(const Row&));
+Interval wilson_interval(double successes, double trials);
 
 /// Over the trials whose value is not NaN; NaN if there are none.
 double mean(const Sample& sample, double TrialMetrics::*value);

@@ -13,6 +13,7 @@ namespace {
 
 using Value = double TrialMetrics::*;
 using Statistic = std::function<double(const Sample&)>;
+using Bounds = std::function<Interval(const Sample&)>;
 
 Statistic share(bool (*holds)(const Row&)) {
   return [=](const Sample& sample) { return percent(sample, holds); };
@@ -44,7 +45,13 @@ struct Column {
   const char* unit;
   int digits;
   Statistic statistic;
+  Bounds bounds = nullptr;  ///< printed behind the value
 };
+
+/// A share with its confidence interval.
+Column interval_column(const char* title, bool (*holds)(const Row&)) {
+  return {title, "% (95 %)", 1, share(holds), [=](const Sample& sample) { return confidence(sample, holds); }};
+}
 
 using Columns = std::vector<Column>;
 using Line = std::vector<std::string>;
@@ -53,8 +60,8 @@ constexpr double kMilli = 1e-3, kMicro = 1e-6, kDegree = M_PI / 180.0;
 
 const Columns& reach_columns() {
   static const Columns columns{
-      {"success", "%", 1, share(succeeded)},
-      {"contact", "%", 1, share(touched)},
+      interval_column("success", succeeded),
+      interval_column("contact", touched),
       {"of links", "%", 1, share(touched_itself)},
       {"arrival", "%", 1, share(arrived)},
       {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
@@ -75,12 +82,27 @@ Columns full_pose_columns() {
 
 const Columns& dodge_columns() {
   static const Columns columns{
-      {"contact", "%", 1, share(touched)},
+      interval_column("contact", touched),
       {"of links", "%", 1, share(touched_itself)},
       {"tool error", "RMS, mm", 1, average(&TrialMetrics::error_rms_m, kMilli)},
       {"tool error", "max, mm", 0, maximum(&TrialMetrics::error_max_m, kMilli)},
       {"orientation", "RMS, deg", 1, average(&TrialMetrics::turn_rms_rad, kDegree)},
       {"returned", "%", 1, share(arrived)},
+      {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
+  };
+  return columns;
+}
+
+const Columns& people_columns() {
+  static const Columns columns{
+      interval_column("success", succeeded),
+      interval_column("contact", touched),
+      interval_column("avoidable", touched_avoidably),
+      {"still 0.5 s", "before, %", 1, share(touched_avoidably_late)},
+      interval_column("deeper than", touched_deeper_than_at_rest),
+      {"arm at rest", "touched, %", 1, share(touched_at_rest)},
+      {"of links", "%", 1, share(touched_itself)},
+      {"own closing", "max, m/s", 2, maximum(&TrialMetrics::closing_mps)},
       {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
   };
   return columns;
@@ -119,7 +141,12 @@ Line line_of(const Sample& sample, const Columns& columns) {
   const Row &first = sample.front(), &last = sample.back();
   Line line{first.law, first.family->name, fmt::format("{}", sample.size()),
             fmt::format("{}..{}", first.seed, last.seed)};
-  for (const Column& column : columns) line.push_back(number(column.statistic(sample), column.digits));
+  for (const Column& column : columns) {
+    line.push_back(number(column.statistic(sample), column.digits));
+    if (!column.bounds) continue;
+    const Interval bounds = column.bounds(sample);
+    line.back() += fmt::format(" ({}-{})", number(bounds.lower, column.digits), number(bounds.upper, column.digits));
+  }
   return line;
 }
 
@@ -156,13 +183,17 @@ std::string tables(const std::vector<Row>& rows, bool with_cpu) {
     if (with_cpu) columns.insert(columns.end(), cpu_columns().begin(), cpu_columns().end());
     return columns;
   };
-  std::vector<Sample> reaches, full_poses, dodges;
+  std::vector<Sample> reaches, full_poses, dodges, people;
   for (Sample& sample : samples(rows)) {
     const Family& family = *sample.front().family;
-    (family.dodge ? dodges : family.full_pose ? full_poses : reaches).push_back(std::move(sample));
+    (family.dodge          ? dodges
+     : family.has_people() ? people
+     : family.full_pose    ? full_poses
+                           : reaches)
+        .push_back(std::move(sample));
   }
   return table(reaches, all(reach_columns())) + table(full_poses, all(full_pose_columns())) +
-         table(dodges, all(dodge_columns()));
+         table(dodges, all(dodge_columns())) + table(people, all(people_columns()));
 }
 
 std::string smoothness_table(const std::vector<Row>& rows) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "host/campaign/judge.h"
+#include "host/campaign/people/people_judge.h"
 #include "host/sim/plant.h"
 
 namespace sidestep::campaign {
@@ -63,14 +64,19 @@ TrialMetrics run_trial(const Scene& scene, TrialController& controller) {
     output = loop.control(0.0);
   }
   Judge judge(scene, loop.plant().last_command_radps());
+  PeopleJudge people_judge(scene);
   for (int k = 0; k < scene.periods; ++k) {
     if (k > 0) output = loop.control(k * kPeriod_s);
     judge.record_state(k, loop.plant().q_rad());
+    people_judge.record_state(loop.plant().q_rad());
     judge.record_command(output.velocity_radps, output.cpu_s);
     loop.apply(output);
   }
   judge.record_state(scene.periods, loop.plant().q_rad());
-  return judge.metrics();
+  people_judge.record_state(loop.plant().q_rad());
+  TrialMetrics metrics = judge.metrics();
+  if (scene.family->has_people()) people_judge.complete(metrics);
+  return metrics;
 }
 
 }  // namespace sidestep::campaign

@@ -52,6 +52,27 @@ double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double r
   return pose.truth->nearest({sphere}, within_m).clearance_m;
 }
 
+double UrdfArm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsules, double within_m) const {
+  std::vector<sim::Obstacle> obstacles;
+  for (const Capsule& capsule : capsules) {
+    const Vector3 axis_m = capsule.end - capsule.start;
+    sim::Obstacle obstacle;
+    obstacle.solid.shape = sim::Shape::kCapsule;
+    obstacle.solid.size_m = {capsule.radius_m, axis_m.norm(), 0.0};
+    obstacle.motion.position_m = capsule.centre();
+    obstacle.motion.orientation = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis_m);
+    obstacles.push_back(obstacle);
+  }
+  return std::min(within_m, pose.truth->nearest(obstacles, within_m).clearance_m);
+}
+
+std::vector<Capsule> UrdfArm::enclosing_capsules(const Joints& q_rad) const {
+  const LinkPoses poses = forward_kinematics(model_.arm, q_rad);
+  std::vector<Capsule> links;
+  for (const LinkShape& shape : model_.arm.shapes) links.push_back(transformed(poses, shape));
+  return links;
+}
+
 double UrdfArm::self_clearance(const ArmPose& pose, double within_m) const {
   return std::min(within_m, pose.truth->nearest_links(within_m).clearance_m);
 }

@@ -42,6 +42,8 @@ void bad_arguments_end_with_code_2(void**) {
                                 "--jobs 0",
                                 "--config nowhere.yaml",
                                 "--csv /nowhere/at/all.csv --count 1",
+                                "--resume --count 1",
+                                "--replay walk-by:1",
                                 "--replay moving",
                                 "--replay slow:1",
                                 "--replay moving:1 --output /nowhere/at/all.yaml",
@@ -98,6 +100,39 @@ void an_interrupted_run_keeps_its_finished_rows(void**) {
   check(text_of(err).find("interrupted after") != std::string::npos, "%s", text_of(err).c_str());
   const std::vector<Row> rows = read_csv(file);
   check(!rows.empty() && rows.size() < 100'000, "%zu rows", rows.size());
+}
+
+void a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one(void**) {
+  const std::string file = scratch_folder() + "/killed.csv";
+  const std::string run = "--family moving --count 300 --law plain --quiet --no-cpu --jobs 1";
+  const Answer whole = campaign(run);
+  int rows = 0;
+  for (int attempt = 0; attempt < 50 && rows < 5; ++attempt) {  // until the killed run had time for some rows
+    const std::string kill = "timeout -s KILL " + std::to_string(0.3 * (attempt + 1));
+    check(std::system((kill + " build/campaign " + run + " --csv " + file + " >/dev/null 2>&1").c_str()) != 0,
+          "the run ended before it was killed");
+    rows = static_cast<int>(read_interrupted_csv(file).size());
+  }
+  check(rows >= 5 && rows < 300, "%d rows", rows);
+  const Answer resumed = campaign(run + " --resume --csv " + file);
+  check(resumed.code == 0 && resumed.out == whole.out, "%s\n%s", resumed.out.c_str(), resumed.err.c_str());
+  const Answer merged = campaign("merge --no-cpu " + file);
+  check(merged.out == whole.out, "%s", merged.out.c_str());
+}
+
+void a_run_with_other_arguments_is_not_resumed(void**) {
+  const std::string file = scratch_folder() + "/first.csv", run = " --count 2 --quiet --csv " + file;
+  campaign("--family moving --law plain" + run);
+  const std::string before = text_of(file);
+  for (const char* other : {"--family moving --law sidestep", "--family fast --law plain",
+                            "--family moving --law plain --seed 2", "--family moving --law plain --count 1 --jobs 1",
+                            "--family moving --law plain --config firmware/config/panda.yaml"}) {
+    const Answer answer = campaign(other + std::string(" --resume") +
+                                   (std::string(other).find("--count") != std::string::npos ? " --csv " + file : run));
+    check(answer.code == 2 && answer.out.empty(), "%s: code %d", other, answer.code);
+    check(one_line_with(answer.err.substr(0, answer.err.find('\n')), {"first.csv"}), "%s", answer.err.c_str());
+    check(text_of(file) == before, "%s: the file was changed", other);
+  }
 }
 
 void a_finding_of_a_search_runs_again_from_its_line(void**) {
@@ -161,6 +196,8 @@ int main() {
       cmocka_unit_test(shards_merge_to_the_table_of_one_run),
       cmocka_unit_test(merging_a_scene_twice_is_refused),
       cmocka_unit_test(an_interrupted_run_keeps_its_finished_rows),
+      cmocka_unit_test(a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one),
+      cmocka_unit_test(a_run_with_other_arguments_is_not_resumed),
       cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
       cmocka_unit_test(an_interrupted_search_prints_its_table),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "firmware/base/fail.h"
+#include "host/campaign/statistics.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -40,6 +41,19 @@ std::string line(const std::string& kind, const Results& results) {
                      median_arrival_s(results));
 }
 
+/// The shares of all problems with their 95 % confidence intervals.
+std::string intervals(const Results& results) {
+  const auto share = [&](const char* name, long count) {
+    const auto problems = static_cast<double>(results.size()), found = static_cast<double>(count);
+    const Interval interval = wilson_interval(found, problems);
+    return fmt::format("{} {:.1f} % ({:.1f}-{:.1f})", name, 100.0 * found / problems, interval.lower, interval.upper);
+  };
+  const long solved = count(results, [](const ProblemResult& r) { return r.arrived(0.01) && !r.touched(); });
+  const long touched = count(results, [](const ProblemResult& r) { return r.touched(); });
+  return fmt::format("All, with 95 % confidence: {}, {}.\n", share("solved to 10 mm", solved),
+                     share("contact", touched));
+}
+
 }  // namespace
 
 std::string problem_table(const std::vector<Problem>& problems, const Results& results) {
@@ -54,7 +68,7 @@ std::string problem_table(const std::vector<Problem>& problems, const Results& r
                   Results(results.begin() + static_cast<long>(first), results.begin() + static_cast<long>(end)));
     first = end;
   }
-  return table + line("all", results) +
+  return table + line("all", results) + intervals(results) +
          "Published for the whole set of 7 x 100: VAMP (RRT-Connect) solves 699. cuRobo solves all of its 800.\n";
 }
 

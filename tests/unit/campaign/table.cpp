@@ -5,7 +5,7 @@
 #include <cstring>
 #include <random>
 
-#include "host/campaign/runner.h"
+#include "host/campaign/resume.h"
 #include "host/campaign/statistics.h"
 #include "tests/support/check.h"
 #include "tests/support/scratch.h"
@@ -32,6 +32,8 @@ std::vector<Row> some_rows() {
         row.metrics.witness_path_rad = seed % 7 == 0 ? TrialMetrics::kNone : 0.1;
         row.metrics.jerk_radps3 = 1e300 * any(engine);
         row.metrics.cpu_mean_s = 1e-6 * any(engine);
+        if (family.has_people()) row.metrics.rest_clearance_m = any(engine);
+        if (family.has_people()) row.metrics.late_way_out = seed % 2 == 0 ? 1.0 : 0.0;
         rows.push_back(row);
       }
     }
@@ -56,9 +58,71 @@ void a_csv_file_preserves_every_bit(void**) {
     check(std::memcmp(&read_back[i].metrics.clearance_m, &rows[i].metrics.clearance_m, sizeof(double)) == 0, "row %zu",
           i);
     check(read_back[i].metrics.jerk_radps3 == rows[i].metrics.jerk_radps3, "row %zu", i);
+    check(same_result(read_back[i], rows[i]), "row %zu", i);
     check(std::isnan(read_back[i].metrics.witness_path_rad) == std::isnan(rows[i].metrics.witness_path_rad), "row %zu",
           i);
   }
+}
+
+void only_files_with_people_have_their_columns(void**) {
+  const std::string file = scratch_folder() + "/columns.csv";
+  const auto has_columns = [&](const char* family) {
+    write_csv(file, {{&family_named(family), "paper", 5, {}}});
+    const std::vector<Row> read_back = read_csv(file);
+    check(read_back.size() == 1 && read_back[0].family == &family_named(family), "%s", family);
+    return sidestep::test::text_of(file).find("way_out") != std::string::npos;
+  };
+  assert_false(has_columns("moving"));
+  assert_true(has_columns("walk-by@camera"));
+}
+
+void rows_of_a_killed_writer_are_read_without_its_unfinished_line(void**) {
+  const std::string file = scratch_folder() + "/killed.csv";
+  write_csv(file, some_rows());
+  const std::string whole = sidestep::test::text_of(file);
+  const std::string cut = sidestep::test::scratch_file("cut.csv", whole.substr(0, whole.size() - 20));
+  const std::vector<Row> rows = read_interrupted_csv(cut);
+  check(rows.size() == some_rows().size() - 1 && same_result(rows.back(), some_rows()[rows.size() - 1]), "%zu rows",
+        rows.size());
+  check(read_interrupted_csv(sidestep::test::scratch_file("head.csv", "family,la")).empty(), "a header in part");
+  check(sidestep::test::one_line_with(
+            sidestep::test::message_of([] { read_interrupted_csv(sidestep::test::scratch_file("no.csv", "a,b\n")); }),
+            {"no.csv"}),
+        "another file");
+}
+
+void a_run_goes_on_where_it_was_interrupted(void**) {
+  std::vector<Task> tasks;
+  for (uint64_t k = 0; k < 6; ++k) tasks.push_back({&family_named("moving"), scene_seed(3, k)});
+  const std::atomic<bool> stop{false};
+  const TestedController plain{"plain", nullptr};
+  const std::vector<Row> whole = run(tasks, plain, 1, true, stop);
+  const std::string file = scratch_folder() + "/resume.csv";
+  write_csv(file, {whole[4], whole[1]});
+  const Resumed resumed = resume(file, tasks, plain);
+  check(resumed.rows.size() == 2 && resumed.rest.size() == 4, "%zu rows, %zu tasks", resumed.rows.size(),
+        resumed.rest.size());
+  for (const size_t i : {0u, 1u, 2u, 3u}) check(resumed.rest[i].seed == tasks[i + (i > 0) + (i > 2)].seed, "%zu", i);
+  check(resume(scratch_folder() + "/none.csv", tasks, plain).rest.size() == tasks.size(), "no file yet");
+}
+
+void a_file_of_another_run_is_not_resumed(void**) {
+  const std::vector<Task> tasks{{&family_named("moving"), 5}};
+  const std::atomic<bool> stop{false};
+  const TestedController plain{"plain", nullptr};
+  const std::string file = scratch_folder() + "/other.csv";
+  const auto refusal = [&](const Row& row) {
+    write_csv(file, {row});
+    return sidestep::test::message_of([&] { resume(file, tasks, plain); });
+  };
+  const Row row = run(tasks, plain, 1, true, stop).front();
+  check(refusal(row).empty(), "%s", refusal(row).c_str());
+  Row law = row, seed = row, result = row;
+  law.law = "paper";
+  seed.seed = 6;
+  result.metrics.path_rad += 1e-12;
+  for (const Row& other : {law, seed, result})
+    check(sidestep::test::one_line_with(refusal(other), {"other.csv", "moving"}), "%s", refusal(other).c_str());
 }
 
 void merged_shards_give_the_table_of_the_whole_run(void**) {
@@ -102,6 +166,47 @@ void statistics_of_a_known_sample(void**) {
   check_near(ratio(sample, &TrialMetrics::arrival_s, &TrialMetrics::witness_arrival_s), 2.0, 0.0);
   check_near(largest(sample, &TrialMetrics::arrival_s), 5.0, 0.0);
   check(std::isnan(largest(sample, &TrialMetrics::error_rms_m)), "no trial has it");
+}
+
+void confidence_intervals_are_wilsons(void**) {
+  const auto check_interval = [](double successes, double trials, double lower, double upper) {
+    const Interval interval = wilson_interval(successes, trials);
+    check_near(interval.lower, lower, 0.005);
+    check_near(interval.upper, upper, 0.005);
+  };
+  check_interval(0, 10, 0.0, 27.75);  // published values of the score interval
+  check_interval(10, 10, 72.25, 100.0);
+  check_interval(5, 10, 23.66, 76.34);
+  check_interval(81, 263, 25.53, 36.62);  // Newcombe (1998), Statistics in Medicine 17, table I
+  check_interval(15, 148, 6.24, 16.05);
+  check_interval(0, 20, 0.0, 16.11);
+  check_interval(1, 29, 0.61, 17.18);
+}
+
+void the_table_prints_shares_with_their_interval(void**) {
+  const std::string text = tables({trial(0.02, 0.001, 3.0), trial(-0.01, 0.002, 2.0)}, false);
+  check(text.find("50.0 (9.5-90.5)") != std::string::npos, "%s", text.c_str());
+}
+
+Row among_people(double clearance_m, double rest_clearance_m, double way_out, double late_way_out) {
+  Row row{&family_named("walk-by"), "sidestep", 0, {}};
+  row.metrics.clearance_m = clearance_m;
+  row.metrics.rest_clearance_m = rest_clearance_m;
+  row.metrics.way_out = way_out;
+  row.metrics.late_way_out = late_way_out;
+  return row;
+}
+
+void contacts_with_persons_are_classified(void**) {
+  const Row none = among_people(0.02, -0.1, 1, TrialMetrics::kNone), avoidable = among_people(-0.02, 0.3, 1, 0),
+            late = among_people(-0.05, -0.1, 1, 1), hopeless = among_people(-0.11, -0.1, 0, 0);
+  const Sample sample{none, avoidable, late, hopeless};
+  check_near(percent(sample, touched), 75.0, 0.0);
+  check_near(percent(sample, touched_avoidably), 50.0, 0.0);
+  check_near(percent(sample, touched_avoidably_late), 25.0, 0.0);
+  check_near(percent(sample, touched_at_rest), 75.0, 0.0);
+  assert_true(touched_deeper_than_at_rest(avoidable) && touched_deeper_than_at_rest(hopeless));
+  assert_false(touched_deeper_than_at_rest(none) || touched_deeper_than_at_rest(late));
 }
 
 void links_that_touch_each_other_are_a_contact(void**) {
@@ -150,9 +255,16 @@ void a_stopped_run_starts_no_trial(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_csv_file_preserves_every_bit),
+      cmocka_unit_test(only_files_with_people_have_their_columns),
+      cmocka_unit_test(rows_of_a_killed_writer_are_read_without_its_unfinished_line),
       cmocka_unit_test(merged_shards_give_the_table_of_the_whole_run),
       cmocka_unit_test(a_duplicate_trial_is_rejected_by_name),
+      cmocka_unit_test(a_run_goes_on_where_it_was_interrupted),
+      cmocka_unit_test(a_file_of_another_run_is_not_resumed),
       cmocka_unit_test(statistics_of_a_known_sample),
+      cmocka_unit_test(confidence_intervals_are_wilsons),
+      cmocka_unit_test(the_table_prints_shares_with_their_interval),
+      cmocka_unit_test(contacts_with_persons_are_classified),
       cmocka_unit_test(links_that_touch_each_other_are_a_contact),
       cmocka_unit_test(threads_and_shards_do_not_change_the_results),
       cmocka_unit_test(a_stopped_run_starts_no_trial),

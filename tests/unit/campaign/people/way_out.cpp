@@ -1,0 +1,118 @@
+#include "host/campaign/people/way_out.h"
+
+#include "host/campaign/people/people_judge.h"
+#include "host/campaign/scene_maker.h"
+#include "host/campaign/trial.h"
+#include "tests/support/check.h"
+
+using namespace sidestep::campaign;
+using sidestep::Vector3;
+
+namespace {
+
+/// The LWA3 stretched upward, and one capsule along y that comes from x = 1.5 m and stops at the arm's axis or, if
+/// wide, a wall of such capsules as high as the arm reaches; t = 0 to 4 s.
+Scene approached(double arrival_s, bool wide) {
+  Scene scene{};
+  scene.family = &family_named("walk-by");
+  scene.arm = &lwa3_arm();
+  scene.periods = 400;
+  scene.start_rad = scene.goal_rad = Joints::Zero(7);
+  for (double z_m = wide ? 0.6 : 0.9; z_m <= (wide ? 2.2 : 0.9); z_m += 0.1) {
+    std::vector<CapsulePath::Ends> samples;
+    for (int k = 0; k <= 400; ++k) {
+      const double x_m = 1.5 * std::max(0.0, 1.0 - k * kPeriod_s / arrival_s);
+      const double half_m = wide ? 3.0 : 0.2;
+      samples.push_back({{x_m, -half_m, z_m}, {x_m, half_m, z_m}});
+    }
+    scene.capsules.emplace_back(0.05, kPeriod_s, samples);
+  }
+  return scene;
+}
+
+ArmInstant at_rest(const Scene& scene, int period) {
+  return {period, scene.start_rad, Joints::Zero(7)};
+}
+
+void an_arm_gets_out_of_the_way_of_a_slow_capsule(void**) {
+  const Scene scene = approached(3.0, false);
+  check(clearance_at_rest(scene) < -0.09, "%g m", clearance_at_rest(scene));
+  assert_true(has_way_out(scene, at_rest(scene, 0)));
+}
+
+void no_arm_gets_out_of_the_way_of_what_is_faster(void**) {
+  const Scene scene = approached(0.05, false);
+  assert_false(has_way_out(scene, at_rest(scene, 0)));
+}
+
+void it_depends_on_when_the_arm_begins(void**) {
+  const Scene scene = approached(3.0, false);
+  assert_true(has_way_out(scene, at_rest(scene, 150)));
+  assert_false(has_way_out(scene, at_rest(scene, 278)));
+}
+
+void it_depends_on_the_velocity_of_the_arm(void**) {
+  const Scene scene = approached(3.0, false);
+  ArmInstant toward = at_rest(scene, 220);
+  toward.q_rad[1] = -0.2;  // leans toward the capsule, and moves on
+  toward.qd_radps[1] = -2.0;
+  ArmInstant away = at_rest(scene, 220);
+  away.q_rad[1] = 0.4;
+  away.qd_radps[1] = 2.0;
+  assert_true(has_way_out(scene, away));
+  assert_false(has_way_out(scene, {274, toward.q_rad, toward.qd_radps}));
+}
+
+void a_wall_that_stops_at_the_arm_can_be_fled_only_backward(void**) {
+  assert_true(has_way_out(approached(3.0, true), at_rest(approached(3.0, true), 0)));
+}
+
+/// Swings the second joint toward the capsule.
+class TowardController : public TrialController {
+ public:
+  ControllerOutput cycle(const ControllerInput&) override {
+    ControllerOutput output;
+    output.ready = true;
+    output.velocity_radps = Joints::Zero(7);
+    output.velocity_radps[1] = -0.3;
+    return output;
+  }
+};
+
+class IdleController : public TrialController {
+ public:
+  ControllerOutput cycle(const ControllerInput&) override {
+    ControllerOutput output;
+    output.ready = true;
+    output.velocity_radps = Joints::Zero(7);
+    return output;
+  }
+};
+
+void an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest(void**) {
+  Scene scene = approached(3.0, false);
+  scene.capsules = {CapsulePath(0.05, 5.0, {{{0.4, -0.2, 0.9}, {0.4, 0.2, 0.9}}, {{0.4, -0.2, 0.9}, {0.4, 0.2, 0.9}}})};
+  TowardController toward;
+  IdleController idle;
+  const TrialMetrics moved = run_trial(scene, toward), rested = run_trial(scene, idle);
+  check_near(rested.clearance_m, 0.3, 1e-9);
+  check_near(rested.rest_clearance_m, rested.clearance_m, 1e-9);
+  check(std::isnan(rested.closing_mps) && std::isnan(rested.late_way_out) && rested.way_out == 1.0, "no contact");
+  check(moved.clearance_m < -0.05 && moved.rest_clearance_m > 0.29, "%g m", moved.clearance_m);
+  check_near(moved.closing_mps, 0.3 * 0.7, 0.05);  // the lever of the second joint to the contact
+  check(moved.way_out == 1.0 && moved.late_way_out == 1.0, "the arm could have stopped");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(an_arm_gets_out_of_the_way_of_a_slow_capsule),
+      cmocka_unit_test(no_arm_gets_out_of_the_way_of_what_is_faster),
+      cmocka_unit_test(it_depends_on_when_the_arm_begins),
+      cmocka_unit_test(it_depends_on_the_velocity_of_the_arm),
+      cmocka_unit_test(a_wall_that_stops_at_the_arm_can_be_fled_only_backward),
+      cmocka_unit_test(an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
