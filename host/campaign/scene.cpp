@@ -40,6 +40,7 @@ std::optional<OrientationTarget> orientation_target_at(const Scene& scene, doubl
 
 std::vector<Capsule> capsules_at(const Scene& scene, double t_s) {
   std::vector<Capsule> capsules;
+  capsules.reserve(scene.capsules.size());
   for (const CapsulePath& path : scene.capsules) capsules.push_back(path.at(t_s).capsule);
   return capsules;
 }

@@ -54,6 +54,7 @@ double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double r
 
 double UrdfArm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsules, double within_m) const {
   std::vector<sim::Obstacle> obstacles;
+  obstacles.reserve(capsules.size());
   for (const Capsule& capsule : capsules) {
     const Vector3 axis_m = capsule.end - capsule.start;
     sim::Obstacle obstacle;
@@ -69,6 +70,7 @@ double UrdfArm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsu
 std::vector<Capsule> UrdfArm::enclosing_capsules(const Joints& q_rad) const {
   const LinkPoses poses = forward_kinematics(model_.arm, q_rad);
   std::vector<Capsule> links;
+  links.reserve(model_.arm.shapes.size());
   for (const LinkShape& shape : model_.arm.shapes) links.push_back(transformed(poses, shape));
   return links;
 }

@@ -75,8 +75,9 @@ std::optional<Behaviour> draw_behaviour(Random& random, const Anatomy& anatomy, 
 bool keeps_apart(const Scene& scene, const std::vector<CapsulePath>& person) {
   const ArmPose start = scene.arm->pose(scene.start_rad), goal = scene.arm->pose(scene.goal_rad);
   const auto apart = [&](const ArmPose& pose, double t_s) {
-    std::vector<Capsule> capsules;
-    for (const CapsulePath& path : person) capsules.push_back(path.at(t_s).capsule);
+    std::vector<Capsule> capsules(person.size());
+    std::transform(person.begin(), person.end(), capsules.begin(),
+                   [t_s](const CapsulePath& path) { return path.at(t_s).capsule; });
     return scene.arm->clearance(pose, capsules, kApart_m) >= kApart_m;
   };
   if (!apart(start, 0.0) || !apart(start, scene.duration_s()) || !apart(goal, scene.duration_s())) return false;
