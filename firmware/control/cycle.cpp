@@ -6,6 +6,7 @@
 #include "firmware/control/extrapolation.h"
 #include "firmware/control/guided_law.h"
 #include "firmware/control/paper/paper_law.h"
+#include "firmware/control/posture_law.h"
 #include "firmware/control/shield/shield.h"
 #include "firmware/control/sidestep_law.h"
 
@@ -23,6 +24,7 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
   if (guide) return guided_law(settings.sidestep, input, *guide, guide_s);
+  if (input.target.is_posture()) return posture_law(settings.sidestep, input);
   return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, model.arm, input.position_rad));
 }
 
@@ -33,13 +35,16 @@ NominalCommand scaled(NominalCommand nominal, double scale) {
 }
 
 /// Weight of the comfort tier, s2/m2. Far from the target a detour costs little, so comfort weighs much; at the target
-/// the tool's task comes first. A guide keeps its own clearance.
+/// the tool's task comes first. A guide keeps its own clearance. Where a posture is the goal, all joints
+/// have a task, not only the tool with its tool_weight, and comfort near the goal would only keep the arm away from it.
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
-  if (mode != Mode::kTrack || guided) return shield.comfort_least_weight;
+  const bool is_posture = mode == Mode::kTrack && input.target.is_posture();
+  const double least = is_posture ? 0.0 : shield.comfort_least_weight;
+  const double largest = is_posture ? shield.comfort_weight / std::max(1.0, shield.tool_weight) : shield.comfort_weight;
+  if (mode != Mode::kTrack || guided) return least;
   const double distance_m = (input.target.position_m - input.poses.tool_position).norm();
   const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
-  return shield.comfort_least_weight +
-         std::clamp(share, 0.0, 1.0) * (shield.comfort_weight - shield.comfort_least_weight);
+  return least + std::clamp(share, 0.0, 1.0) * (largest - least);
 }
 
 /// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion, the

@@ -36,7 +36,7 @@ struct Report {
   int limiting = kLimitingNothing;
   Vector3 tool_position_m = Vector3::Zero();
   Vector3 tool_velocity_mps = Vector3::Zero();
-  double target_distance_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN without a target
+  double target_distance_m = std::numeric_limits<double>::quiet_NaN();  ///< of the tool; NaN without a target
   double clearance_m = std::numeric_limits<double>::quiet_NaN();        ///< NaN while no obstacle is known
   int32_t nearest_obstacle = -1;                                        ///< its id
   int nearest_shape = -1;                                               ///< index into Arm::shapes
@@ -64,7 +64,7 @@ struct Result {
 ///   next_mode           WAIT, HOLD, TRACK, BRAKE, FAULT                   supervisor.h
 ///   forward_kinematics  link poses, tool Jacobian                         model/kinematics.h
 ///   measure_clearance   distances and closest approaches                  model/clearance.h
-///   law                 nominal joint velocity                            sidestep_law.h, guided_law.h, paper/
+///   law                 nominal joint velocity                            sidestep_law.h, posture_law.h, paper/, ...
 ///   shield              the nearest safe joint velocity                   shield/shield.h
 ///   gate                finite, continuous, within the joint limits       command_stream.h
 ///

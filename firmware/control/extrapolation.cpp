@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace sidestep {
+namespace {
+
+/// A posture target within the position limits, with the tool's place in the posture.
+Target within_limits(const Arm& arm, Target target) {
+  target.posture_rad = target.posture_rad.cwiseMax(arm.limits.lower_rad).cwiseMin(arm.limits.upper_rad);
+  target.position_m = forward_kinematics(arm, target.posture_rad).tool_position;
+  return target;
+}
+
+}  // namespace
 
 ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obstacles, double now_s) {
   if (!obstacles.message) return {nullptr, 0.0, 0.0, &model.surroundings};
@@ -48,6 +58,7 @@ Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& targe
 
 Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
   const Target& target = *latest.message;
+  if (target.is_posture()) return within_limits(model.arm, target);
   return extrapolated(model.settings.bounds_target_speed ? bounded_speed(model.arm, poses, target) : target,
                       latest.age_s(now_s));
 }

@@ -28,7 +28,8 @@ Target extrapolated(const Target& target, double dt_s);
 Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
 
 /// The newest target, extrapolated from its receipt to now_s; its velocities are bounded as above where
-/// Settings::bounds_target_speed is set. There must be one.
+/// Settings::bounds_target_speed is set. A posture is clamped to the position limits, and position_m is the tool's
+/// place in it. There must be a target.
 Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s);
 
 }  // namespace sidestep

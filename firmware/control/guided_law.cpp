@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/control/posture_law.h"
 #include "firmware/control/sidestep_law.h"
 
 namespace sidestep {
@@ -28,6 +29,7 @@ NominalCommand guided_law(const SidestepGains& gains, const LawInput& input, con
   const GuidePoint point = point_of(guide, time_s);
   const JointVector feedback_radps = gains.k_guide_per_s * (point.position_rad - input.position_rad);
   if (time_s >= guide.end_s() && guide.foresight_status != ForesightStatus::kWaiting) {
+    if (input.target.is_posture()) return posture_law(gains, input);
     const JointVector fastest = gains.guide_posture_share * input.arm.limits.velocity_radps;
     return sidestep_law(gains, input, feedback_radps.cwiseMax(-fastest).cwiseMin(fastest));
   }

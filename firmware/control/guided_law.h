@@ -24,7 +24,8 @@ double guide_time_s(const Arm& arm, const Guide& guide, const JointVector& posit
 
 /// Nominal velocity of an arm that follows a guide with at least one knot: the guide's joint velocity plus k_guide
 /// times the deviation from it, both at guide_time_s(). After the last knot: the sidestep law with that knot as the
-/// preferred posture; with ForesightStatus::kWaiting the arm stays at the knot instead.
+/// preferred posture, or the posture law for a posture; with ForesightStatus::kWaiting the arm stays at the knot
+/// instead.
 NominalCommand guided_law(const SidestepGains& gains, const LawInput& input, const Guide& guide, double time_s);
 
 }  // namespace sidestep

@@ -27,10 +27,13 @@ Verdict InputGate::accept(ArmState& arm, double now_s) {
   return {arm_order_.accept(arm.utime, received_s, timeouts_.arm_state_lost_s), nullptr};
 }
 
+/// Postures have an order of their own, because their sender may have another clock.
 Verdict InputGate::accept(Target& target, double now_s) {
-  if (!sanitize(target)) return rejected("target with impossible values");
+  const bool fits = !target.is_posture() || target.posture_rad.size() == arm_.joints;
+  if (!fits || !sanitize(target)) return rejected("target with impossible values");
   if (!is_ordered()) return kAccepted;
-  return {target_order_.accept(target.utime, now_s, timeouts_.target_s), nullptr};
+  MessageOrder& order = target.is_posture() ? joint_target_order_ : target_order_;
+  return {order.accept(target.utime, now_s, timeouts_.target_s), nullptr};
 }
 
 /// After the timeout of targets a restarted operator is believed.

@@ -50,7 +50,8 @@ class InputGate {
   const Arm& arm_;
   Timeouts timeouts_;
   InputSource source_;
-  MessageOrder arm_order_, target_order_, obstacles_order_, other_joints_order_, control_order_, attachments_order_;
+  MessageOrder arm_order_, target_order_, joint_target_order_, obstacles_order_, other_joints_order_, control_order_,
+      attachments_order_;
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;
 };

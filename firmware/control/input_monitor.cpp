@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/control/message_order.h"
+#include "firmware/model/reach.h"
 
 namespace sidestep {
 namespace {
@@ -105,6 +106,19 @@ void monitor_arm(const Model& model, const Latest<ArmState>& arm, double now_s, 
   result.continuity.arm_received_s = monitor.accepted.received_s;
 }
 
+/// Whether the goal can be reached at all, as far as that is known.
+void examine_goal(const Model& model, const Target& target, const Guide* guide, InputStatus& status) {
+  const GoalFinding found = guide ? guide->goal : GoalFinding::kNone;
+  if (!target.is_posture()) {
+    status.target_out_of_reach = found == GoalFinding::kOutOfReach || is_beyond_reach(model.arm, target.position_m);
+    return;
+  }
+  const JointLimits& limits = model.arm.limits;
+  status.posture_blocked = found == GoalFinding::kPostureBlocked;
+  status.posture_outside_limits = (target.posture_rad.array() < limits.lower_rad.array()).any() ||
+                                  (target.posture_rad.array() > limits.upper_rad.array()).any();
+}
+
 }  // namespace
 
 MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double now_s, ArmMonitor& monitor) {
@@ -125,6 +139,7 @@ MonitorResult monitor_inputs(const Model& model, const Inputs& inputs, double no
   status.obstacles_fresh = none_required || inputs.obstacles.fresh(now_s, timeouts.obstacles_s);
   status.target_known = inputs.target.message != nullptr;
   status.target_fresh = inputs.target.fresh(now_s, timeouts.target_s);
+  if (inputs.target.message) examine_goal(model, *inputs.target.message, inputs.guide, status);
 
   monitor.skipped_in_a_row = inputs.skipped_cycles > 0 ? monitor.skipped_in_a_row + inputs.skipped_cycles : 0;
   status.late = monitor.skipped_in_a_row >= kMaxSkippedCycles;

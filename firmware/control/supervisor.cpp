@@ -16,6 +16,15 @@ Supervision start(const InputStatus& status, Mode mode, Fault fault) {
   return {Mode::kHold, Fault::kNone, "holding"};
 }
 
+const char* tracking_message(const InputStatus& status) {
+  if (status.target_out_of_reach) return "tracking as near as the arm can: the target is out of reach";
+  if (status.posture_blocked)
+    return "tracking as near as the arm can: the posture is too near to an obstacle or to the arm itself";
+  if (status.posture_outside_limits)
+    return "tracking as near as the arm can: the posture is outside the position limits";
+  return "tracking";
+}
+
 }  // namespace
 
 Supervision next_mode(const Supervision& last, const InputStatus& status) {
@@ -33,7 +42,7 @@ Supervision next_mode(const Supervision& last, const InputStatus& status) {
   if (status.operator_silent) return {Mode::kHold, Fault::kNone, "holding: the operator is silent"};
   if (!status.target_known) return {Mode::kHold, Fault::kNone, "holding: no target yet"};
   if (!status.target_fresh) return {Mode::kHold, Fault::kNone, "holding: the target is too old"};
-  return {Mode::kTrack, Fault::kNone, "tracking"};
+  return {Mode::kTrack, Fault::kNone, tracking_message(status)};
 }
 
 }  // namespace sidestep

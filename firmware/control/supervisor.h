@@ -15,10 +15,13 @@ struct InputStatus {
   bool obstacles_known = false;   ///< a set was accepted, or none is required
   bool obstacles_fresh = false;   ///< not older than timeouts.obstacles_s, or none received and none required
   bool target_known = false;
-  bool target_fresh = false;     ///< not older than timeouts.target_s
-  bool late = false;             ///< 3 or more cycles were skipped since the last cycle on time
-  bool stop = false;             ///< the process has been asked to end
-  bool paused = false;           ///< by the operator
+  bool target_fresh = false;            ///< not older than timeouts.target_s
+  bool target_out_of_reach = false;     ///< the tool cannot get there: certain, or found by foresight
+  bool posture_blocked = false;         ///< found by foresight: too near to an obstacle or to the arm itself
+  bool posture_outside_limits = false;  ///< a posture target is outside the position limits, and clamped to them
+  bool late = false;                    ///< 3 or more cycles were skipped since the last cycle on time
+  bool stop = false;                    ///< the process has been asked to end
+  bool paused = false;                  ///< by the operator
   bool operator_silent = false;  ///< an operator is needed, and the newest control message is older than its timeout
   bool foreign_command = false;  ///< another controller commanded the arm within timeouts.consistent_s
 };
@@ -47,7 +50,7 @@ inline bool moves(Mode mode) {
 ///   HOLD, TRACK, BRAKE  BRAKE  stop request; foreign command; arm state older than 30 ms; obstacles older than 100 ms;
 ///                              3 or more skipped cycles since the last cycle on time
 ///   HOLD, TRACK, BRAKE  HOLD   paused; the operator is silent (only where timeouts.control_s is set)
-///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms)
+///   HOLD, TRACK, BRAKE  TRACK  the target is fresh (250 ms); the message says so if it cannot be reached
 ///   HOLD, TRACK, BRAKE  HOLD   otherwise
 ///
 /// HOLD slows to rest and keeps avoiding obstacles. So does BRAKE while arm state and obstacles are fresh; after a stop

@@ -32,6 +32,7 @@ bool plausible(const Target& target) {
   const bool finite = target.orientation.coeffs().allFinite() && target.angular_velocity_radps.allFinite();
   const bool pose_valid = !target.tracks_orientation ||
                           (is_unit(target.orientation) && within(target.angular_velocity_radps, kLargestRate_radps));
+  if (target.is_posture() && !within(target.posture_rad, kLargestJoint_rad)) return false;
   return finite && pose_valid && within(target.position_m, kLargestLength_m) &&
          within(target.velocity_mps, kLargestSpeed_mps);
 }
@@ -59,6 +60,13 @@ bool plausible(const Control& control) {
 
 bool sanitize(Target& target) {
   if (!plausible(target)) return false;
+  if (target.is_posture()) {
+    Target posture;
+    posture.utime = target.utime;
+    posture.posture_rad = target.posture_rad;
+    target = posture;
+    return true;
+  }
   target.orientation = target.tracks_orientation ? target.orientation.normalized() : Quaternion::Identity();
   if (!target.tracks_orientation) target.angular_velocity_radps.setZero();
   return true;

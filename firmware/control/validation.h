@@ -10,13 +10,13 @@ namespace sidestep {
 /// have (lengths up to 1000 m, speeds up to 1000 m/s or rad/s), sizes are not negative, and quaternions that are used
 /// have length 1 within 1e-3.
 bool plausible(const ArmState& state, int joints);
-bool plausible(const Target& target);
+bool plausible(const Target& target);  ///< its number of joints is not checked
 bool plausible(const Obstacle& obstacle);
 bool plausible(const OtherJoints& joints);
 bool plausible(const Control& control);  ///< a known command, a scale from 0 to 1
 
 /// Each returns false for an implausible value. Otherwise fields without meaning get neutral values: the orientation of
-/// a target that tracks none, the angular velocity of a sphere.
+/// a target that tracks none, all but the posture of a posture target, the angular velocity of a sphere.
 bool sanitize(Target& target);
 bool sanitize(ObstacleSet& set);
 bool sanitize(Attachments& attachments);  ///< what is held has no velocity of its own

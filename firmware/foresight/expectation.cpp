@@ -47,7 +47,8 @@ void Expectation::set(const Snapshot& from, const Forecast& forecast) {
 bool Expectation::target_as_expected(const Snapshot& now, double after_s) const {
   if (!tracking_) return true;
   const Target expected = predicted_target(target_, after_s);
-  return now.target.tracks_orientation == expected.tracks_orientation &&
+  return is_same_posture(now.target, expected, joint_scale_) &&
+         now.target.tracks_orientation == expected.tracks_orientation &&
          within(now.target.position_m, expected.position_m, kTarget_m) &&
          within(now.target.velocity_mps, expected.velocity_mps, kTargetSpeed_mps) &&
          (!expected.tracks_orientation || now.target.orientation.angularDistance(expected.orientation) <= kTarget_rad);

@@ -16,7 +16,8 @@ class Expectation {
 
   /// Whether the snapshot is at most kForecastPath_s later than `from`, in the same mode, and deviates little:
   ///   obstacles   the same ones, each within 10 mm and 0.05 m/s of its extrapolation, of the same size within 10 mm
-  ///   target      within 5 mm and 0.02 m/s of predicted_target(), the orientation within 0.03 rad
+  ///   target      within 5 mm and 0.02 m/s of predicted_target(), the orientation within 0.03 rad; a posture within
+  ///               0.005 rad (times Arm::joint_scale) per joint
   ///   arm         every joint within 0.05 rad (times Arm::joint_scale) of the path, joints outside the chain within
   ///               0.01 rad or m; what the tool holds and may touch is the same
   bool holds(const Snapshot& now) const;

@@ -27,6 +27,7 @@ void Foresight::reset(bool tracking) {
   tree_planner_.reset();
   calls_ = 0;
   searches_left_ = 0;
+  goal_.clear();
 }
 
 void Foresight::adopt(const Guide& guide, const Forecast& forecast) {
@@ -57,6 +58,16 @@ void Foresight::assess(const Snapshot& now) {
   expectation_.set(now, expected_);
 }
 
+Guide Foresight::plan_to_goal(const Snapshot& now) {
+  const bool blocked = tree_planner_.is_blocked(now);
+  goal_.examined(blocked);
+  if (blocked) return {};
+  Guide guide = planner_.plan_to_target(now);
+  if (guide.knots == 0) guide = tree_planner_.plan(now);
+  goal_.searched(planner_.found_goal() || tree_planner_.has_goal(now));
+  return guide;
+}
+
 void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) {
     // Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
@@ -73,8 +84,7 @@ void Foresight::search(const Snapshot& now) {
     candidate_ = Guide{};
     return;
   }
-  candidate_ = now.tracking ? planner_.plan_to_target(now) : Guide{};
-  if (candidate_.knots == 0 && now.tracking) candidate_ = tree_planner_.plan(now);
+  candidate_ = now.tracking ? plan_to_goal(now) : Guide{};
   if (candidate_.knots > 0) return;
   if (expected_.collides) candidate_ = planner_.plan_retreat(now);
   if (++unsuccessful_searches_ > kSearchesUntilWaiting && guide_.knots == 0 && !expected_.arrives)
@@ -84,6 +94,7 @@ void Foresight::search(const Snapshot& now) {
 const Guide& Foresight::update(const Snapshot& now) {
   if (!now.moves || now.tracking != tracking_) reset(now.tracking);
   if (!now.moves) return guide_;
+  if (now.tracking) goal_.set_goal(now.target);
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(expected_)) searches_left_ = kSearchesAfterBad;
   if (calls_++ % kAssessEvery_calls != 0) {
@@ -91,6 +102,8 @@ const Guide& Foresight::update(const Snapshot& now) {
   } else if (!is_good(expected_) || !expectation_.holds(now)) {
     assess(now);
   }
+  if (is_good(expected_)) goal_.clear();
+  guide_.goal = goal_.finding();
   return guide_;
 }
 

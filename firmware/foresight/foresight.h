@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/foresight/expectation.h"
+#include "firmware/foresight/goal_search.h"
 #include "firmware/foresight/planner.h"
 #include "firmware/foresight/rollout.h"
 #include "firmware/foresight/tree_planner.h"
@@ -13,7 +14,12 @@ namespace sidestep {
 class Foresight {
  public:
   explicit Foresight(const Model& model)
-      : model_(model), rollout_(model), planner_(model), tree_planner_(model), expectation_(model.arm) {}
+      : model_(model),
+        rollout_(model),
+        planner_(model),
+        tree_planner_(model),
+        goal_(model.arm),
+        expectation_(model.arm) {}
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
   /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
@@ -34,6 +40,9 @@ class Foresight {
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
   /// arrive. The law alone then continues.
   ///
+  /// Guide::goal is what the searches found about the present goal (goal_search.h). No path to a posture is planned
+  /// while it is blocked.
+  ///
   /// In HOLD a forecast is good if the arm does not collide. Only plan_retreat() is called, and the guide is dropped
   /// after its end as soon as the rollout without it does not collide.
   ///
@@ -45,12 +54,14 @@ class Foresight {
   void reset(bool tracking);
   void assess(const Snapshot& now);
   void search(const Snapshot& now);
+  Guide plan_to_goal(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
 
   const Model& model_;
   Rollout rollout_;
   Planner planner_;
   TreePlanner tree_planner_;
+  GoalSearch goal_;
   bool tracking_ = false;  ///< of the last snapshot
   int64_t calls_ = 0;
   int searches_left_ = 0;  ///< after a forecast that was not good

@@ -100,14 +100,23 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   return true;
 }
 
+bool Planner::find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad) {
+  goal_rad = target.posture_rad;
+  if (target.is_posture()) return true;
+  const bool near = random_.uniform(0.0, 1.0) < kNearGoalShare;
+  goal_rad = random_configuration(from.arm.position_rad, near ? kNearGoal_rad : kAnywhere_rad);
+  return solve_ik(model_.arm, target, goal_rad);
+}
+
 Guide Planner::plan_to_target(const Snapshot& from) {
   const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
   const Target target = predicted_target(from.target, kTargetCoast_s);
+  found_goal_ = false;
   Guide best;
   for (int attempt = 0; attempt < kTriesPerCall; ++attempt) {
-    const bool near = random_.uniform(0.0, 1.0) < kNearGoalShare;
-    JointVector goal_rad = random_configuration(from.arm.position_rad, near ? kNearGoal_rad : kAnywhere_rad);
-    if (!solve_ik(model_.arm, target, goal_rad)) continue;
+    JointVector goal_rad;
+    if (!find_goal(from, target, goal_rad)) continue;
+    found_goal_ = true;
 
     Guide guide = start_of(from, ForesightStatus::kGuided);
     if (random_.uniform(0.0, 1.0) < kPauseShare) guide.time_s[0] += random_.uniform(0.0, kLongestPause_s);

@@ -21,10 +21,13 @@ class Planner {
   /// Restarts the random sequence from foresight.seed.
   void reset() { random_ = SplitMix64(model_.settings.foresight.seed); }
 
-  /// Six tries. The goal configuration has the tool where the target is predicted to be kTargetCoast_s from now. The
-  /// guide reaches it at least 1 s before the horizon. Returns the clear guide that arrives soonest, with
-  /// ForesightStatus::kGuided; without knots if no try succeeds.
+  /// Six tries. The goal configuration is the target's posture, or has the tool where the target is predicted to be
+  /// kTargetCoast_s from now. The guide reaches it at least 1 s before the horizon. Returns the clear guide that
+  /// arrives soonest, with ForesightStatus::kGuided; without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
+
+  /// Whether the last plan_to_target() found a goal configuration, clear or not.
+  bool found_goal() const { return found_goal_; }
 
   /// 100 tries. The goal configuration is random, each joint within 1 rad (0.25 m), in every other try within 2 rad, of
   /// its present position. Returns the first guide that is clear up to the horizon, with ForesightStatus::kWaiting;
@@ -34,11 +37,13 @@ class Planner {
  private:
   Guide start_of(const Snapshot& from, ForesightStatus status) const;
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
+  bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;
   void append(Guide& guide, const JointVector& q_rad) const;
 
   const Model& model_;
   SplitMix64 random_;
+  bool found_goal_ = false;
 };
 
 }  // namespace sidestep

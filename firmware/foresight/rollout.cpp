@@ -16,6 +16,10 @@ constexpr double kPeriod_s = 0.03;
 constexpr double kArrived_m = 0.01;
 constexpr double kArrived_rad = 0.05;
 
+// A tool's way of about 10 mm.
+constexpr double kInPosture_rad = 0.02;
+constexpr double kSamePosture_rad = 0.005;
+
 constexpr double kNoArrivalCost_s = 5.0;
 
 // A rollout is coarse: below this share of the hard clearance a contact is assumed possible.
@@ -48,6 +52,15 @@ bool is_at(const LinkPoses& poses, const Target& target) {
   if ((target.position_m - poses.tool_position).norm() > kArrived_m) return false;
   if (!target.tracks_orientation) return true;
   return Quaternion(poses.tool_rotation).angularDistance(target.orientation) <= kArrived_rad;
+}
+
+bool is_in_posture(const Arm& arm, const JointVector& q_rad, const Target& target) {
+  return (q_rad - target.posture_rad).cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff() <= kInPosture_rad;
+}
+
+bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale) {
+  if (!a.is_posture() || !b.is_posture()) return a.is_posture() == b.is_posture();
+  return (a.posture_rad - b.posture_rad).cwiseQuotient(joint_scale).cwiseAbs().maxCoeff() <= kSamePosture_rad;
 }
 
 Rollout::Rollout(const Model& model) : coarse_(model) {
@@ -119,7 +132,8 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     arm.velocity_radps = result.command.velocity_radps;
 
     const LinkPoses poses = forward_kinematics(coarse_.arm, arm.position_rad, others);
-    forecast.arrives = !from.tracking || is_at(poses, target);
+    forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(coarse_.arm, arm.position_rad, target)
+                                                              : is_at(poses, target));
     if (!forecast.arrives) forecast.cost_s += period_s;
     least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, enough_m, allowance_m.data()));

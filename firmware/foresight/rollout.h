@@ -13,7 +13,7 @@ constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a c
 
 /// The result of a rollout.
 struct Forecast {
-  bool arrives = false;   ///< the tool is at the target at the end; always true in HOLD
+  bool arrives = false;   ///< the tool is at the target, or the arm in the posture, at the end; always true in HOLD
   bool collides = false;  ///< the clearance falls below half of what is needed (in HOLD below 1.5 times)
   double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides
 
@@ -43,10 +43,17 @@ class Rollout {
 /// For how long a target is assumed to keep its velocity.
 constexpr double kTargetCoast_s = 1.0;
 
+/// Whether both targets are of the same kind, and postures agree within 0.005 rad (times joint_scale) per joint: a
+/// forecast or plan for one is good for the other, the law bridges the rest.
+bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale);
+
 /// The target after_s later: it keeps its velocity for kTargetCoast_s and then rests.
 Target predicted_target(const Target& target, double after_s);
 
 /// Whether the tool is within 10 mm of the target and, where the target tracks orientation, within 0.05 rad.
 bool is_at(const LinkPoses& poses, const Target& target);
+
+/// Whether every joint of q_rad, n x 1, is within 0.02 rad (times Arm::joint_scale) of the posture of a target.
+bool is_in_posture(const Arm& arm, const JointVector& q_rad, const Target& target);
 
 }  // namespace sidestep

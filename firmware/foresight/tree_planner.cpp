@@ -62,6 +62,7 @@ void TreePlanner::reset() {
 
 bool TreePlanner::is_current(const Snapshot& now) const {
   if (!valid_ || now.target.tracks_orientation != target_.tracks_orientation) return false;
+  if (!is_same_posture(now.target, target_, model_.arm.joint_scale)) return false;
   if ((now.target.position_m - target_.position_m).norm() > kSameTarget_m) return false;
   if (now.target.tracks_orientation && now.target.orientation.angularDistance(target_.orientation) > kSameTarget_rad)
     return false;
@@ -95,7 +96,14 @@ JointVector TreePlanner::random_configuration() {
   return q_rad;
 }
 
+/// A posture is the only goal.
 void TreePlanner::find_goals() {
+  if (target_.is_posture()) {
+    if (goals_rad_.size() > 0 || !free_.contains(target_.posture_rad)) return;
+    goals_rad_.add(target_.posture_rad);
+    trees_[1].add({target_.posture_rad, -1});
+    return;
+  }
   const int tries = goals_rad_.size() == 0 ? kFirstGoalTriesPerSlice : kGoalTriesPerSlice;
   for (int i = 0; i < tries && !goals_rad_.is_full() && !trees_[1].is_full(); ++i) {
     JointVector goal_rad = goals_rad_.size() == 0 && i == 0 ? start_rad_ : random_configuration();
@@ -223,6 +231,12 @@ Guide TreePlanner::finish(const Snapshot& from) {
     if (is_clear_of_movers(from, guide)) return guide;
   }
   return {};
+}
+
+bool TreePlanner::is_blocked(const Snapshot& from) {
+  if (!from.target.is_posture()) return false;
+  if (!is_current(from)) begin(from);
+  return !free_.contains(from.target.posture_rad);
 }
 
 Guide TreePlanner::plan(const Snapshot& from) {

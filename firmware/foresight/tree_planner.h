@@ -7,8 +7,9 @@
 namespace sidestep {
 
 /// Plans paths among obstacles at rest: out of boxes, into shelves, under tables. Two random trees (RRT-Connect;
-/// Kuffner and LaValle 2000), one from the arm and one from up to 8 postures at the target, grow toward each other in
-/// joint space. The path where they meet is shortened, and timed with blended corners (path_timing.h).
+/// Kuffner and LaValle 2000), one from the arm and one from the target's posture or from up to 8 at the target, grow
+/// toward each other in joint space. The path where they meet is shortened, and timed with blended corners
+/// (path_timing.h).
 ///
 /// The work is cut into slices, one per call of plan(): about kChecksPerSlice configurations are examined. What a slice
 /// has found is kept for the next one while the target and the obstacles at rest stay where they are. Large: lives on
@@ -25,6 +26,13 @@ class TreePlanner {
   /// horizon moving obstacles, at their present velocities, stay foresight.clearance_m away. Else without knots, for
   /// example while the target moves.
   Guide plan(const Snapshot& from);
+
+  /// Whether the posture of the target, in a snapshot in TRACK, is too near to an obstacle at rest or to the arm
+  /// itself.
+  bool is_blocked(const Snapshot& from);
+
+  /// Whether it has found a configuration with the tool at this target.
+  bool has_goal(const Snapshot& now) const { return goals_rad_.size() > 0 && is_current(now); }
 
  private:
   struct Node {

@@ -70,7 +70,8 @@ Target target_of(const Controller::Target& from) {
           vector(from.velocity_mps),
           from.tracks_orientation,
           quaternion(from.orientation),
-          vector(from.angular_velocity_radps)};
+          vector(from.angular_velocity_radps),
+          {}};
 }
 
 Controller::Result result_of(const sidestep::Result& from) {
@@ -156,6 +157,15 @@ double Controller::period_s() const {
 bool Controller::set_target(const Target& target, double now_s) {
   auto& newest = inside_->target;
   *newest.draft = target_of(target);
+  if (!inside_->gate.accept(*newest.draft, now_s)) return false;
+  newest.take_draft(now_s);
+  return true;
+}
+
+bool Controller::set_joint_target(const Joints& position_rad, double now_s) {
+  auto& newest = inside_->target;
+  *newest.draft = sidestep::Target{};
+  newest.draft->posture_rad = vector(position_rad, joints());
   if (!inside_->gate.accept(*newest.draft, now_s)) return false;
   newest.take_draft(now_s);
   return true;

@@ -54,6 +54,9 @@ class __attribute__((visibility("default"))) Controller {
   };
   /// Returns false and keeps the previous target when a number is implausible.
   bool set_target(const Target& target, double now_s);
+  /// A posture of all joints, clamped to the position limits, in place of a target of the tool: the newest of both
+  /// counts. Returns false and keeps the previous target when a number is implausible.
+  bool set_joint_target(const Joints& position_rad, double now_s);
 
   enum class Shape { kSphere, kCapsule, kBox, kCylinder };
   struct Obstacle {
@@ -110,7 +113,7 @@ class __attribute__((visibility("default"))) Controller {
     int limiting = 0;              ///< bit set of Limiting: what limits the command in this cycle
     double speed_scale = 1;        ///< of set_control(); 0 while paused
     const char* message = "";      ///< the reason for the mode, static text
-    double target_distance_m = 0;  ///< NaN without a target
+    double target_distance_m = 0;  ///< of the tool, to its place in a posture target; NaN without a target
     double clearance_m = 0;        ///< surface to surface; NaN before the first obstacle set
     int nearest_obstacle = -1;     ///< its id
     bool guided = false;           ///< this cycle followed a guide of foresight

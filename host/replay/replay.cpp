@@ -44,7 +44,7 @@ class Rerun {
   std::string take(const lcm::LogEvent& event) {
     const Channels& channels = config_.channels;
     if (event.channel == channels.arm_state) arm_.next = bytes_of(event);
-    if (event.channel == channels.target) target_.next = bytes_of(event);
+    if (event.channel == channels.target || event.channel == channels.joint_target) target_.next = bytes_of(event);
     if (event.channel == channels.obstacles) obstacles_->next = bytes_of(event);
     if (event.channel == kObstacleValuesChannel) obstacle_values_ = bytes_of(event);
     if (event.channel == kStepArgumentsChannel) return cycle(event);
@@ -96,6 +96,11 @@ class Rerun {
   template <typename Message>
   bool accept(Packet packet, double received_s, Message& message) {
     return !decoder_.decode(packet, message) && gate_->accept(message, received_s);
+  }
+  bool accept(Packet packet, double received_s, Target& target) {
+    const char* wrong =
+        is_joint_target(packet) ? decoder_.decode_joint_target(packet, target) : decoder_.decode(packet, target);
+    return !wrong && gate_->accept(target, received_s);
   }
   bool accept(Packet packet, double received_s, ObstacleSet& set) {
     int64_t utime = 0;

@@ -18,8 +18,20 @@ Run::Run(const Scenario& scenario, const std::string& csv_file)
     throw std::runtime_error(fmt::format("{}: start_rad: has {} values, the arm has {} joints", scenario.file,
                                          scenario.start_rad.size(), truth_.joints()));
   }
+  place_target();
   row_.arm = scenario.arm;
   if (!csv_file.empty()) csv_.emplace(csv_file, truth_.joints(), static_cast<int>(scenario.world.obstacles.size()));
+}
+
+void Run::place_target() {
+  Target& target = scenario_.world.target;
+  if (target.joints_rad.size() == 0) return;
+  if (truth_.joints() != target.joints_rad.size()) {
+    throw std::runtime_error(fmt::format("{}: target.joints_rad: has {} values, the arm has {} joints", scenario_.file,
+                                         target.joints_rad.size(), truth_.joints()));
+  }
+  truth_.place(target.joints_rad);
+  target.motion.position_m = truth_.tool_m();
 }
 
 void Run::receive(const ControllerMessage& message) {

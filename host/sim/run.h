@@ -46,6 +46,8 @@ class Run {
   Plant plant;
 
  private:
+  /// Gives a posture target the tool's position there, to which distances are measured.
+  void place_target();
   double neighbour_clearance_m(const std::vector<Run>& all) const;
 
   Scenario scenario_;

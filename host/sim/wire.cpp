@@ -9,6 +9,7 @@
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/joint_state_t.hpp>
+#include <sidestep/joint_target_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 #include <stdexcept>
@@ -43,6 +44,14 @@ target_t message_of(const Target& target, int64_t utime) {
   message.tracks_orientation = target.tracks_orientation ? 1 : 0;
   copy(target.motion.orientation, message.quaternion);
   copy(target.motion.angular_velocity_radps, message.angular_velocity);
+  return message;
+}
+
+joint_target_t message_of(const JointVector& joints_rad, int64_t utime) {
+  joint_target_t message;
+  message.utime = utime;
+  message.num_joints = static_cast<int32_t>(joints_rad.size());
+  message.joint_position.assign(joints_rad.data(), joints_rad.data() + joints_rad.size());
   return message;
 }
 
@@ -244,7 +253,11 @@ void SimWire::publish(size_t arm, const World& world, int64_t utime) {
 }
 
 void SimWire::publish(size_t arm, const Target& target, int64_t utime) {
-  network_->publish(network_->channels[arm].target, message_of(target, utime), utime);
+  const Channels& channels = network_->channels[arm];
+  if (target.joints_rad.size() > 0)
+    network_->publish(channels.joint_target, message_of(target.joints_rad, utime), utime);
+  else
+    network_->publish(channels.target, message_of(target, utime), utime);
 }
 
 void SimWire::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {

@@ -17,8 +17,8 @@ struct ReceivedMessage {
   ControllerMessage message;
 };
 
-/// The simulator's LCM connection: sends TARGET, OBSTACLES, ATTACHMENTS and ARM_STATE, receives ARM_COMMAND and
-/// CONTROLLER_STATUS, for each of its arms.
+/// The simulator's LCM connection: sends TARGET or JOINT_TARGET, OBSTACLES, ATTACHMENTS and ARM_STATE, receives
+/// ARM_COMMAND and CONTROLLER_STATUS, for each of its arms.
 class SimWire {
  public:
   /// url: of LCM, empty for LCM's default. log_file: log of all messages in lcm-logger's format, empty for none. Throws
@@ -26,7 +26,7 @@ class SimWire {
   SimWire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms);
   ~SimWire();
 
-  /// TARGET, OBSTACLES and, where something is grasped, ATTACHMENTS.
+  /// TARGET or JOINT_TARGET, OBSTACLES and, where something is grasped, ATTACHMENTS.
   void publish(size_t arm, const World& world, int64_t utime);
   void publish(size_t arm, const Target& target, int64_t utime);
   void publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime);

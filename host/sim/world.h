@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/sim/joints.h"
 #include "host/sim/path.h"
 #include "host/sim/solid.h"
 
@@ -30,9 +31,11 @@ struct Obstacle {
   bool is_person = false;
 };
 
+/// The goal of the tool, or of all joints.
 struct Target {
-  Motion motion;
+  Motion motion;  ///< with joints_rad: of the tool there, at rest
   bool tracks_orientation = false;
+  JointVector joints_rad{};  ///< a posture; size 0: the goal is of the tool
 };
 
 /// What the tool of an arm holds and may touch.

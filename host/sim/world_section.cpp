@@ -69,6 +69,11 @@ Solid solid_of(const ShapeSize& shape) {
 
 Target read_target(YamlSection section) {
   Target target;
+  if (section.has("joints_rad")) {
+    target.joints_rad = section.numbers("joints_rad", 1, kMaxJoints, {-100.0, 100.0});
+    section.finish();
+    return target;
+  }
   target.motion = read_motion(section);
   target.tracks_orientation = section.has("quaternion");
   if (!target.tracks_orientation && section.has("angular_velocity_radps"))

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Publish a target on TARGET, 50 times a second, until Ctrl-C: a point that rests, moves, or follows the arrow keys.
+"""Publish a target, 50 times a second, until Ctrl-C: on TARGET a point that rests, moves, or follows the arrow keys; on
+JOINT_TARGET a posture.
 
 The controller tracks the newest target. While another process, such as the simulator, sends targets too, the arm
 follows both alternately.
@@ -9,7 +10,7 @@ import curses
 import math
 import sys
 
-from wire import add_lcm_url, command_line, finite, publish, target_t
+from wire import add_lcm_url, command_line, finite, joint_target_t, publish, target_t
 
 STEP_M = 0.02  # for each key press
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
@@ -24,6 +25,12 @@ def send(motion, lcm_url):
         target.position, target.velocity = motion(t_s)
         return target
     publish("TARGET", message_at, lcm_url)
+
+
+def send_posture(joints_rad, lcm_url):
+    posture = joint_target_t()
+    posture.num_joints, posture.joint_position = len(joints_rad), joints_rad
+    publish("JOINT_TARGET", lambda _t_s: posture, lcm_url)
 
 
 def line(start_m, velocity_mps):
@@ -68,20 +75,29 @@ def positive(text):
     return value
 
 
+def joints(text):
+    return [finite(number) for number in text.split(",")]
+
+
 def parsed():
-    parser = argparse.ArgumentParser(description=__doc__, usage="%(prog)s [-h] [options] X Y Z [VX VY VZ]")
-    parser.add_argument("numbers", type=finite, nargs="+", metavar="N",
+    parser = argparse.ArgumentParser(description=__doc__, usage="%(prog)s [-h] [options] X Y Z [VX VY VZ]\n"
+                                     "       %(prog)s [--lcm-url URL] --joints Q1,Q2,...")
+    parser.add_argument("numbers", type=finite, nargs="*", metavar="N",
                         help="position of the target or centre of its path, m; then velocity, m/s (default 0)")
     path = parser.add_mutually_exclusive_group()
     path.add_argument("--circle", type=positive, metavar="RADIUS", help="move on a horizontal circle, radius in m")
     path.add_argument("--figure-eight", type=positive, metavar="RADIUS",
                       help="move on a horizontal figure eight, half its length in m")
+    path.add_argument("--joints", type=joints, metavar="Q1,Q2,...",
+                      help="the positions of all joints, rad, or m for a prismatic joint, in place of a point")
     path.add_argument("--keys", action="store_true", help="move with the arrow keys (x, y) and with + and - (z)")
     parser.add_argument("--period", type=positive, default=8.0, metavar="S",
                         help="period of the circle or figure eight (default %(default)g)")
     add_lcm_url(parser)
     arguments = parser.parse_args(command_line())
-    if len(arguments.numbers) not in (3, 6):
+    if arguments.joints and arguments.numbers:
+        parser.error("expected no point beside --joints")
+    if not arguments.joints and len(arguments.numbers) not in (3, 6):
         parser.error("expected three numbers (position) or six (position and velocity)")
     if arguments.keys and not (sys.stdin.isatty() and sys.stdout.isatty()):
         parser.error("--keys needs a terminal")
@@ -90,21 +106,26 @@ def parsed():
 
 def words_of(arguments):
     """What is sent, for people."""
+    if arguments.joints:
+        return f"the posture {' '.join(f'{value:g}' for value in arguments.joints)} on JOINT_TARGET"
     numbers = [f"{value:g}" for value in arguments.numbers]
     point, velocity = " ".join(numbers[:3]), " ".join(numbers[3:])
     if arguments.circle or arguments.figure_eight:
         shape = f"a circle of {arguments.circle:g} m radius" if arguments.circle else (
             f"a figure eight of {2 * arguments.figure_eight:g} m length")
-        return f"a target on {shape} about {point} m, once in {arguments.period:g} s"
-    return f"a target that starts at {point} m and moves at {velocity} m/s" if velocity else f"a target at {point} m"
+        return f"a target on {shape} about {point} m, once in {arguments.period:g} s on TARGET"
+    moves = f"that starts at {point} m and moves at {velocity} m/s" if velocity else f"at {point} m"
+    return f"a target {moves} on TARGET"
 
 
 def main():
     arguments = parsed()
     position_m, velocity_mps, url = arguments.numbers[:3], arguments.numbers[3:] or [0.0] * 3, arguments.lcm_url
     if not arguments.keys:
-        print(f"sending {words_of(arguments)} on TARGET, 50 times a second; Ctrl-C ends", flush=True)
-    if arguments.keys:
+        print(f"sending {words_of(arguments)}, 50 times a second; Ctrl-C ends", flush=True)
+    if arguments.joints:
+        send_posture(arguments.joints, url)
+    elif arguments.keys:
         curses.wrapper(lambda screen: send(keys(screen, position_m), url))
     elif arguments.circle:
         send(circle(position_m, arguments.circle, arguments.period), url)

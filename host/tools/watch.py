@@ -10,7 +10,7 @@ import wire
 PERIOD_S = 0.1
 STALE_S = 0.5          # a controller that is silent for longer is not running
 OLD_OBSTACLES_S = 0.1  # as timeouts.obstacles_s: older obstacles grow, and their clearance measures nothing
-CHANNELS = ["CONTROLLER_STATUS", "ARM_STATE", "TARGET", "OBSTACLES"]
+CHANNELS = ["CONTROLLER_STATUS", "ARM_STATE", "TARGET", "JOINT_TARGET", "OBSTACLES"]
 
 
 def constants(prefix):
@@ -48,6 +48,13 @@ def message_text(status):
 
 def target_text(status):
     return f"{status.target_distance:.3f} m" if math.isfinite(status.target_distance) else "no target"
+
+
+def goal_text(ages_s):
+    """Which kind of target came last; the newest counts."""
+    kinds = {"TARGET": "of the tool", "JOINT_TARGET": "a posture"}
+    ages_s = {channel: age_s for channel, age_s in ages_s.items() if channel in kinds}
+    return kinds[min(ages_s, key=ages_s.get)] if ages_s else "none received"
 
 
 def clearance_text(status, ages_s):
@@ -125,7 +132,7 @@ def lines(latest, ages_s):
             f"limited by {limits_text(status)}; fault: {fault_text(status)}; {status.rejected_messages} messages "
             "rejected",
             f"links: {self_text(status) or 'distances not measured'}",
-            f"obstacles: {obstacles}; target: {'received' if 'TARGET' in latest else 'none received'}", "",
+            f"obstacles: {obstacles}; target: {goal_text(ages_s)}", "",
             *joint_lines(latest.get("ARM_STATE"), ages_s.get("ARM_STATE", 0.0))]
 
 

@@ -11,12 +11,12 @@ import lcm
 
 # Appended, so that pydrake's own modules come first. Installed scripts find the types in their own folder.
 sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
-from sidestep import (attachments_t, control_t, controller_status_t, joint_command_t, joint_state_t, named_joints_t,
-                      obstacle_t, obstacles_t, target_t)
+from sidestep import (attachments_t, control_t, controller_status_t, joint_command_t, joint_state_t, joint_target_t,
+                      named_joints_t, obstacle_t, obstacles_t, target_t)
 
 TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,
          "CONTROLLER_STATUS": controller_status_t, "OTHER_JOINTS": named_joints_t, "CONTROL": control_t,
-         "ATTACHMENTS": attachments_t}
+         "ATTACHMENTS": attachments_t, "JOINT_TARGET": joint_target_t}
 MODES = {getattr(controller_status_t, name): name for name in ("WAIT", "HOLD", "TRACK", "BRAKE", "FAULT")}
 
 

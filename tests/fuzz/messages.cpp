@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto inputs = std::make_unique<FuzzedInputs>();  // kept, so that messages follow each other as in a run
   if (size == 0) return 0;
   inputs->now_s += 0.01;
-  const uint8_t channel = data[0] % 6;
+  const uint8_t channel = data[0] % 7;
   ++data, --size;
   if (channel == 0 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->arm)) require_arm(inputs->arm);
   if (channel == 1 && inputs->sidestep.receive(data, size, inputs->now_s, inputs->target))
@@ -46,5 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const Obstacle& shape : inputs->attachments.shapes) require(plausible(shape));
     require(inputs->attachments.held.size() == inputs->attachments.shapes.size());
   }
+  if (channel == 6 && inputs->sidestep.receive_joint_target(data, size, inputs->now_s, inputs->target))
+    require(plausible(inputs->target) && inputs->target.posture_rad.size() == 7);
   return 0;
 }

@@ -163,6 +163,29 @@ void a_pose_is_tracked(void**) {
   check(off_rad < 1e-2 && loop.last.target_distance_m < 1e-3, "%g rad, %g m", off_rad, loop.last.target_distance_m);
 }
 
+void the_newest_of_posture_and_target_is_followed(void**) {
+  Loop loop;
+  loop.run(1.0);
+  Controller::Joints goal_rad = loop.arm.position_rad;
+  for (size_t i = 0; i < 7; ++i) goal_rad[i] += 0.1;
+  const auto cycle_to_posture = [&] {
+    loop.now_s += loop.controller.period_s();
+    loop.controller.set_obstacles(&loop.sphere, 1, loop.now_s);
+    loop.controller.set_target(loop.target, loop.now_s);
+    assert_true(loop.controller.set_joint_target(goal_rad, loop.now_s));
+    loop.last = loop.controller.step(loop.arm, loop.now_s);
+    for (size_t i = 0; i < 7; ++i) loop.arm.position_rad[i] += loop.last.velocity_radps[i] * loop.controller.period_s();
+    loop.arm.velocity_radps = loop.last.velocity_radps;
+  };
+  for (int k = 0; k < 300; ++k) cycle_to_posture();
+  for (size_t i = 0; i < 7; ++i) check_near(loop.arm.position_rad[i], goal_rad[i], 1e-4);
+  check_near(loop.last.target_distance_m, 0.0, 1e-4);
+  goal_rad[3] = NAN;
+  assert_false(loop.controller.set_joint_target(goal_rad, loop.now_s));
+  loop.run(2.0);
+  check(loop.last.target_distance_m < 0.01, "%g m from the target", loop.last.target_distance_m);
+}
+
 void invalid_inputs_are_rejected_and_the_last_valid_ones_are_used(void**) {
   Loop loop;
   loop.run(1.0);
@@ -246,6 +269,7 @@ int main() {
       cmocka_unit_test(what_is_held_is_kept_clear_and_what_is_allowed_may_be_touched),
       cmocka_unit_test(implausible_attachments_are_rejected),
       cmocka_unit_test(a_pose_is_tracked),
+      cmocka_unit_test(the_newest_of_posture_and_target_is_followed),
       cmocka_unit_test(invalid_inputs_are_rejected_and_the_last_valid_ones_are_used),
       cmocka_unit_test(a_configuration_with_neighbours_is_rejected),
       cmocka_unit_test(without_obstacle_sets_the_controller_brakes_and_reports_it),

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 #include <sidestep/joint_state_t.hpp>
+#include <sidestep/joint_target_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
 #include <vector>
@@ -41,6 +42,14 @@ inline target_t target_message(int64_t utime, const Vector3& position_m, const V
   copy(position_m, message.position);
   copy(velocity_mps, message.velocity);
   message.quaternion[0] = 1.0;
+  return message;
+}
+
+inline joint_target_t joint_target_message(int64_t utime, const JointVector& q_rad) {
+  joint_target_t message;
+  message.utime = utime;
+  message.num_joints = static_cast<int32_t>(q_rad.size());
+  message.joint_position.assign(q_rad.data(), q_rad.data() + q_rad.size());
   return message;
 }
 

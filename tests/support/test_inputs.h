@@ -25,6 +25,11 @@ class TestInputs {
   bool receive(const void* bytes, size_t size, double now_s, Target& value) {
     return receive_value(bytes, size, now_s, target_, value);
   }
+  bool receive_joint_target(const void* bytes, size_t size, double now_s, Target& value) {
+    if (!inputs_.receive_joint_target(Packet{static_cast<const uint8_t*>(bytes), size}, now_s, target_)) return false;
+    value = target_.message;
+    return true;
+  }
   bool receive(const void* bytes, size_t size, double now_s, OtherJoints& value) {
     return receive_value(bytes, size, now_s, other_joints_, value);
   }

@@ -159,10 +159,12 @@ def announcements():
     for script, words, said in ((send_target, ["0.1", "0.2", "-1", "--circle", "0.3"],
                                  "sending a target on a circle of 0.3 m radius about 0.1 0.2 -1 m, once in 8 s on T"),
                                 (send_target, ["1", "0", "1", "0", "0", ".1"], "at 1 0 1 m and moves at 0 0 0.1 m/s"),
+                                (send_target, ["--joints", "-1,0,.5"], "posture -1 0 0.5 on JOINT_TARGET, 50 times"),
                                 (send_obstacles, ["1,0,1,.1"], "sending 1 obstacle on OBSTACLES, 50 times a second"),
                                 (send_obstacles, [], "sending no obstacles (the empty set)")):
         output = io.StringIO()
         with contextlib.redirect_stdout(output), mock.patch.multiple(script, send=lambda _motion, _url: None), \
+                mock.patch.object(send_target, "send_posture", lambda _joints_rad, _url: None), \
                 mock.patch.object(sys, "argv", ["", *words]):
             script.main()
         assert said in output.getvalue() and output.getvalue().count("\n") == 1, output.getvalue()
@@ -217,6 +219,9 @@ def refusals():
                 (control, ["pause", "--speed", "1.5"], 2, "1.5 is not from 0 to 1"),
                 (control, ["halt"], 2, "invalid choice: 'halt'"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
+                (send_target, ["1", "0", "1", "--joints", "0,0"], 2, "no point beside --joints"),
+                (send_target, ["--joints", "0,nan"], 2, "invalid joints value: '0,nan'"),
+                (send_target, [], 2, "expected three numbers"),
                 (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "subscribe to '('"),
                 (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),
                 (report, [log, "--config", no_robot], 1, "robot has no urdf"),
@@ -263,6 +268,9 @@ def watched_texts():
     for clearance_m, text in ((0.1234, "0.123 m"), (math.inf, "no obstacles"), (math.nan, "unknown, no obstacles")):
         status.clearance = clearance_m
         assert watch.clearance_text(status, {}).startswith(text)
+    for ages, text in (({}, "none received"), ({"TARGET": 0.1, "ARM_STATE": 0.0}, "of the tool"),
+                       ({"TARGET": 0.3, "JOINT_TARGET": 0.1}, "a posture")):
+        assert watch.goal_text(ages) == text and f"target: {text}" in "\n".join(watch.lines(latest, ages))
     for scale, text in ((1.0, ""), (0.25, "at 25% speed"), (0.0, "")):
         status.speed_scale = scale
         assert watch.speed_text(status) == text and text in watch.brief(status, {})

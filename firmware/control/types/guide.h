@@ -15,6 +15,13 @@ enum class ForesightStatus : int8_t {
                  ///< knots the law continues alone
 };
 
+/// What foresight has found out about the goal itself.
+enum class GoalFinding : int8_t {
+  kNone,            ///< nothing against it
+  kOutOfReach,      ///< no configuration with the tool at the target was found, however often it was tried
+  kPostureBlocked,  ///< in this posture the arm is too near to an obstacle at rest, or to itself
+};
+
 constexpr int kMaxKnots = 32;
 
 /// A timed path in joint space, given by its knots. Between two knots every joint moves on the cubic that has the
@@ -24,6 +31,7 @@ constexpr int kMaxKnots = 32;
 /// instead.
 struct Guide {
   ForesightStatus foresight_status = ForesightStatus::kDirect;
+  GoalFinding goal = GoalFinding::kNone;   ///< for the report; the law disregards it
   int knots = 0;                           ///< 0: no path to follow
   std::array<double, kMaxKnots> time_s{};  ///< increasing, on the clock of the cycle
   std::array<JointVector, kMaxKnots> position_rad;

@@ -18,7 +18,7 @@ struct ArmState {
   JointVector held_rad{};  ///< position that the drives hold, where the driver reports it; size 0: not reported
 };
 
-/// The goal of the tool, base frame. With tracks_orientation the goal is a full pose.
+/// The goal: of the tool, base frame (with tracks_orientation a full pose), or a posture of the whole arm.
 struct Target {
   int64_t utime = 0;
   Vector3 position_m = Vector3::Zero();
@@ -26,6 +26,10 @@ struct Target {
   bool tracks_orientation = false;
   Quaternion orientation = Quaternion::Identity();
   Vector3 angular_velocity_radps = Vector3::Zero();
+  JointVector posture_rad{};  ///< n x 1; size 0: the goal is of the tool. With a posture the other fields are neutral;
+                              ///< in a cycle position_m is the tool's place in the posture (extrapolation.h)
+
+  bool is_posture() const { return posture_rad.size() > 0; }
 };
 
 /// What an operator asks for.

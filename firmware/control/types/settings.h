@@ -30,7 +30,7 @@ struct PaperGains {
 
 /// Gains of our own law, which computes the nominal velocity (sidestep_law.h).
 struct SidestepGains {
-  double k_pos_per_s = 8.0;          ///< tool speed per metre of distance to the target
+  double k_pos_per_s = 8.0;          ///< tool speed per metre, or joint speed per radian, of distance to the target
   double k_ori_per_s = 4.0;          ///< angular speed per radian of orientation error, for full-pose targets
   double k_posture_per_s = 0.5;      ///< joint speed away from the position limits, in the null space of the task
   double k_guide_per_s = 4.0;        ///< feedback gain on the deviation from a guide

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "firmware/base/realtime.h"
+#include "firmware/io/lcm/message_decoder.h"
 #include "firmware/io/lcm/obstacle_encoder.h"
 
 namespace sidestep {
@@ -70,7 +71,9 @@ class Log {
   void write(const RecordedCycle& cycle, const Messages& messages) {
     const StepArguments& arguments = cycle.arguments;
     write_new(channels_.arm_state, arguments.inputs.arm, messages, RecordKind::kArmState);
-    write_new(channels_.target, arguments.inputs.target, messages, RecordKind::kTarget);
+    const Record& target = messages[static_cast<size_t>(RecordKind::kTarget)];
+    write_new(is_joint_target({target.bytes, target.size}) ? channels_.joint_target : channels_.target,
+              arguments.inputs.target, messages, RecordKind::kTarget);
     write_obstacles(arguments.inputs.obstacles, messages);
     if (messages[static_cast<size_t>(RecordKind::kOtherJoints)].size > 0)
       write_new(channels_.other_joints, arguments.inputs.other_joints, messages, RecordKind::kOtherJoints);

@@ -12,8 +12,8 @@ namespace sidestep {
 /// Kinds of records in a blackbox's ring. Messages are stored as they came, each before the first cycle that uses it.
 /// kObstacleValues follows an obstacle message whose set the cycles used with other values than the message holds: with
 /// remembered obstacles, or merged from several senders (then the message itself is empty). It is the whole set.
-/// kOtherJoints, kControl and kAttachments are for the readers of a log: the values that the cycles used are among
-/// their arguments.
+/// kTarget is a target_t or a joint_target_t. kOtherJoints, kControl and kAttachments are for the readers of a log: the
+/// values that the cycles used are among their arguments.
 enum class RecordKind : uint8_t {
   kArmState,
   kTarget,

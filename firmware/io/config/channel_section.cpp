@@ -14,6 +14,7 @@ void read_channel(YamlSection& section, const std::string& key, std::string& nam
 
 void read_channels(YamlSection section, Channels& channels) {
   read_channel(section, "target", channels.target);
+  read_channel(section, "joint_target", channels.joint_target);
   read_channel(section, "obstacles", channels.obstacles);
   read_channel(section, "arm_state", channels.arm_state);
   read_channel(section, "other_joints", channels.other_joints);

@@ -142,12 +142,16 @@ void read_obstacles(YamlSection obstacles, Settings& settings) {
 void check_channels_are_unique(const YamlSection& root, const Config& config) {
   const Channels& channels = config.channels;
   const Neighbours& neighbours = config.neighbours;
-  std::vector<std::pair<std::string, std::string>> names = {
-      {"channels.target", channels.target},           {"channels.obstacles", channels.obstacles},
-      {"channels.arm_state", channels.arm_state},     {"channels.other_joints", channels.other_joints},
-      {"channels.control", channels.control},         {"channels.attachments", channels.attachments},
-      {"channels.arm_command", channels.arm_command}, {"channels.controller_status", channels.controller_status},
-      {"channels.loop_timing", channels.loop_timing}};
+  std::vector<std::pair<std::string, std::string>> names = {{"channels.target", channels.target},
+                                                            {"channels.joint_target", channels.joint_target},
+                                                            {"channels.obstacles", channels.obstacles},
+                                                            {"channels.arm_state", channels.arm_state},
+                                                            {"channels.other_joints", channels.other_joints},
+                                                            {"channels.control", channels.control},
+                                                            {"channels.attachments", channels.attachments},
+                                                            {"channels.arm_command", channels.arm_command},
+                                                            {"channels.controller_status", channels.controller_status},
+                                                            {"channels.loop_timing", channels.loop_timing}};
   if (!neighbours.publish.empty()) names.emplace_back("neighbours.publish", neighbours.publish);
   for (const std::string& channel : neighbours.listen) names.emplace_back("neighbours.listen", channel);
   std::map<std::string, std::string> used;

@@ -9,6 +9,7 @@ namespace sidestep {
 /// LCM channel names; config section `channels:`.
 struct Channels {
   std::string target = "TARGET";
+  std::string joint_target = "JOINT_TARGET";
   std::string obstacles = "OBSTACLES";
   std::string arm_state = "ARM_STATE";
   std::string other_joints = "OTHER_JOINTS";

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <sidestep/attachments_t.hpp>
 #include <sidestep/control_t.hpp>
+#include <sidestep/joint_target_t.hpp>
 #include <sidestep/named_joints_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
@@ -78,17 +79,22 @@ Obstacle obstacle_of(const obstacle_t& from) {
 
 }  // namespace
 
+bool is_joint_target(Packet packet) {
+  return has_fingerprint<joint_target_t>(packet);
+}
+
 /// Decoded messages; their vectors keep their capacity from one message to the next.
 struct MessageDecoder::Scratch {
   const Arm& model;
   std::unique_ptr<ArmCodec> arm;
   target_t target;
+  joint_target_t joint_target;
   obstacles_t obstacles;
   attachments_t attachments;
 };
 
 MessageDecoder::MessageDecoder(const Dialect& dialect, const Arm& arm)
-    : scratch_(new Scratch{arm, dialect.make_codec(arm.joints), {}, {}, {}}) {
+    : scratch_(new Scratch{arm, dialect.make_codec(arm.joints), {}, {}, {}, {}}) {
   scratch_->obstacles.obstacles.reserve(kMaxObstacles);
   scratch_->attachments.shapes.reserve(kMaxHeldShapes);
   scratch_->attachments.allowed.reserve(kMaxAllowed);
@@ -112,6 +118,18 @@ const char* MessageDecoder::decode(Packet packet, Target& target) {
   target.tracks_orientation = message.tracks_orientation != 0;
   target.orientation = quaternion(message.quaternion);
   target.angular_velocity_radps = vector(message.angular_velocity);
+  target.posture_rad.resize(0);
+  return nullptr;
+}
+
+const char* MessageDecoder::decode_joint_target(Packet packet, Target& target) {
+  if (!is_joint_target(packet)) return "joint target of another type";
+  if (count_of(packet) != scratch_->model.joints) return "joint target with another number of joints than the arm has";
+  joint_target_t& message = scratch_->joint_target;
+  if (!decode_counted(packet, sizeof(double), message)) return "joint target of wrong size";
+  target = Target{};
+  target.utime = message.utime;
+  target.posture_rad = Eigen::Map<const JointVector>(message.joint_position.data(), message.num_joints);
   return nullptr;
 }
 

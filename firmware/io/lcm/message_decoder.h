@@ -15,6 +15,9 @@ constexpr size_t kLargestMessageBytes = kHeaderBytes + kCountBytes + kMaxObstacl
 
 constexpr int kMaxNamedJoints = 256;  ///< in one named_joints_t
 
+/// Whether these are the bytes of a joint_target_t.
+bool is_joint_target(Packet packet);
+
 /// Bytes of inbound messages to values. A message is decoded only if its fingerprint is right and its size is exactly
 /// what its count implies. The numbers are not checked (input_gate.h does). Does not throw; does not allocate after the
 /// largest message of each kind.
@@ -28,6 +31,8 @@ class MessageDecoder {
   /// value undefined.
   const char* decode(Packet packet, ArmState& arm);
   const char* decode(Packet packet, Target& target);
+  /// A joint_target_t: fills the posture and leaves the other fields neutral.
+  const char* decode_joint_target(Packet packet, Target& target);
   const char* decode(Packet packet, Control& control);
   const char* decode(Packet packet, ObstacleSet& obstacles, int64_t& utime);
   const char* decode(Packet packet, Attachments& attachments);

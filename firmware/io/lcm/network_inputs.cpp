@@ -33,6 +33,12 @@ bool NetworkInputs::reject(const char* reason) {
 template <typename Message>
 bool NetworkInputs::receive_value(Packet packet, double now_s, Received<Message>& received) {
   if (const char* wrong = parts_->decoder.decode(packet, received.message)) return reject(wrong);
+  return accept(packet, now_s, received);
+}
+
+/// A decoded message into the gate.
+template <typename Message>
+bool NetworkInputs::accept(Packet packet, double now_s, Received<Message>& received) {
   const Verdict verdict = parts_->gate.accept(received.message, now_s);
   if (verdict.rejected) return reject(verdict.rejected);
   if (verdict.accepted) received.store(packet, now_s);
@@ -45,6 +51,11 @@ bool NetworkInputs::receive(Packet packet, double now_s, Received<ArmState>& rec
 
 bool NetworkInputs::receive(Packet packet, double now_s, Received<Target>& received) {
   return receive_value(packet, now_s, received);
+}
+
+bool NetworkInputs::receive_joint_target(Packet packet, double now_s, Received<Target>& received) {
+  if (const char* wrong = parts_->decoder.decode_joint_target(packet, received.message)) return reject(wrong);
+  return accept(packet, now_s, received);
 }
 
 bool NetworkInputs::receive(Packet packet, double now_s, Received<OtherJoints>& received) {

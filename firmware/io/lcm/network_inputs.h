@@ -31,6 +31,8 @@ class NetworkInputs {
   /// time is that of the oldest part. Received::count is not changed. now_s: local time of receipt.
   bool receive(Packet packet, double now_s, Received<ArmState>& received);
   bool receive(Packet packet, double now_s, Received<Target>& received);
+  /// A message of JOINT_TARGET. Into the same slot as TARGET, so that the newest of both counts.
+  bool receive_joint_target(Packet packet, double now_s, Received<Target>& received);
   bool receive(Packet packet, double now_s, Received<OtherJoints>& received);
   bool receive(Packet packet, double now_s, Received<Control>& received);
   bool receive(Packet packet, double now_s, Received<Attachments>& received);
@@ -45,6 +47,8 @@ class NetworkInputs {
   bool reject(const char* reason);
   template <typename Message>
   bool receive_value(Packet packet, double now_s, Received<Message>& received);
+  template <typename Message>
+  bool accept(Packet packet, double now_s, Received<Message>& received);
 
   std::unique_ptr<Parts> parts_;
   int64_t rejected_ = 0;

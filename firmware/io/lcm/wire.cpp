@@ -111,6 +111,9 @@ void Wire::on_arm_state(PacketHandler handler) {
 void Wire::on_target(PacketHandler handler) {
   network_->subscribe(network_->channels.target, std::move(handler));
 }
+void Wire::on_joint_target(PacketHandler handler) {
+  network_->subscribe(network_->channels.joint_target, std::move(handler));
+}
 void Wire::on_obstacles(PacketHandler handler) {
   network_->subscribe(network_->channels.obstacles, std::move(handler));
 }

@@ -35,6 +35,7 @@ class Wire {
   /// Handlers run inside receive(), in the order of arrival, and must not throw. Call these before the first receive().
   void on_arm_state(PacketHandler handler);
   void on_target(PacketHandler handler);
+  void on_joint_target(PacketHandler handler);
   void on_obstacles(PacketHandler handler);
   void on_other_joints(PacketHandler handler);
   void on_control(PacketHandler handler);

@@ -23,6 +23,7 @@ class Lockstep {
         stop_(requests.stop) {
     wire_.on_arm_state([this](Packet packet) { cycle(packet); });
     wire_.on_target([this](Packet packet) { receive(target_, packet); });
+    wire_.on_joint_target([this](Packet packet) { receive_joint_target(packet); });
     wire_.on_other_joints([this](Packet packet) { receive(other_joints_, packet); });
     wire_.on_control([this, &requests](Packet packet) {
       if (receive(control_, packet) && control_.newest().message.command == ControlCommand::kStop) requests.stop = true;
@@ -76,6 +77,10 @@ class Lockstep {
     if (!inputs_.receive(packet, now_s_, pending.draft())) return false;
     pending.take_draft(now_s_);
     return true;
+  }
+
+  void receive_joint_target(Packet packet) {
+    if (inputs_.receive_joint_target(packet, now_s_, target_.draft())) target_.take_draft(now_s_);
   }
 
   void receive_obstacles(size_t part, Packet packet) {

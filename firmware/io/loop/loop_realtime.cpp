@@ -27,6 +27,7 @@ class Receiver {
       : wire_(wire), inputs_(config.model.settings, config.model.arm, *config.dialect, config.neighbours, false) {
     wire.on_arm_state([this](Packet packet) { receive(arm, packet); });
     wire.on_target([this](Packet packet) { receive(target, packet); });
+    wire.on_joint_target([this](Packet packet) { receive_joint_target(packet); });
     wire.on_other_joints([this](Packet packet) { receive(other_joints, packet); });
     wire.on_control([this, &requests](Packet packet) { receive_control(packet, requests); });
     wire.on_attachments([this](Packet packet) { receive(attachments, packet); });
@@ -60,6 +61,11 @@ class Receiver {
   void receive(TripleBuffer<Received<Message>>& buffer, Packet packet) {
     const bool accepted = inputs_.receive(packet, wire_.received_s(), buffer.draft());
     publish(accepted, buffer);
+  }
+
+  void receive_joint_target(Packet packet) {
+    const bool accepted = inputs_.receive_joint_target(packet, wire_.received_s(), target.draft());
+    publish(accepted, target);
   }
 
   void receive_control(Packet packet, Requests& requests) {

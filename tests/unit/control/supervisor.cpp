@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-constexpr int kFlags = 15;
+constexpr int kFlags = 18;
 static_assert(sizeof(InputStatus) == kFlags, "a new flag belongs into status_of()");
 const Mode kModes[] = {Mode::kWait, Mode::kHold, Mode::kTrack, Mode::kBrake, Mode::kFault};
 
@@ -30,7 +30,10 @@ InputStatus status_of(unsigned bits) {
                              &status.stop,
                              &status.paused,
                              &status.operator_silent,
-                             &status.foreign_command};
+                             &status.foreign_command,
+                             &status.target_out_of_reach,
+                             &status.posture_blocked,
+                             &status.posture_outside_limits};
   for (int i = 0; i < kFlags; ++i) *all[i] = bits >> i & 1;
   return status;
 }
@@ -70,6 +73,17 @@ void tracking_needs_everything_fresh(void**) {
     return next.mode != Mode::kTrack ||
            (f.arm_fresh && !f.arm_lost && !f.arm_inconsistent && f.obstacles_fresh && f.target_known &&
             f.target_fresh && !f.late && !f.stop && !f.foreign_command && !f.paused && !f.operator_silent);
+  });
+}
+
+void a_goal_that_cannot_be_reached_changes_only_the_message_of_tracking(void**) {
+  check_always("unreachable", [](const Supervision& last, const InputStatus& f, const Supervision& next) {
+    InputStatus reachable = f;
+    reachable.target_out_of_reach = reachable.posture_blocked = reachable.posture_outside_limits = false;
+    const bool any = f.target_out_of_reach || f.posture_blocked || f.posture_outside_limits;
+    const Supervision same = next_mode(last, reachable);
+    if (same.mode != next.mode || same.fault != next.fault) return false;
+    return (std::string(same.message) != next.message) == (any && next.mode == Mode::kTrack);
   });
 }
 
@@ -222,6 +236,7 @@ void an_ordinary_run_passes_through_the_expected_modes(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(tracking_needs_everything_fresh),
+      cmocka_unit_test(a_goal_that_cannot_be_reached_changes_only_the_message_of_tracking),
       cmocka_unit_test(a_stopped_arm_does_not_start_on_old_obstacles),
       cmocka_unit_test(a_request_to_stop_never_leads_to_a_moving_mode),
       cmocka_unit_test(the_arm_does_not_move_while_another_controller_commands_it),

@@ -76,6 +76,18 @@ void a_target_that_turns_or_jumps_is_not_expected(void**) {
   assert_false(holds_after([](Snapshot& now) { now.target.tracks_orientation = true; }));
 }
 
+void a_posture_in_place_of_a_position_or_another_one_is_not_expected(void**) {
+  assert_false(holds_after([](Snapshot& now) { now.target.posture_rad = now.arm.position_rad; }));
+  const Arm& arm = test::lwa3();
+  Target posture, other;
+  posture.posture_rad = other.posture_rad = test::home_rad();
+  assert_true(is_same_posture(posture, other, arm.joint_scale));
+  other.posture_rad[6] += 0.0049;
+  assert_true(is_same_posture(posture, other, arm.joint_scale));
+  other.posture_rad[6] += 0.0002;
+  assert_false(is_same_posture(posture, other, arm.joint_scale));
+}
+
 void an_arm_off_its_path_or_in_another_mode_is_not_expected(void**) {
   assert_false(holds_after([](Snapshot& now) { now.arm.position_rad[3] += 0.08; }));
   assert_false(holds_after([](Snapshot& now) { now.tracking = false; }));
@@ -95,6 +107,7 @@ int main() {
       cmocka_unit_test(an_obstacle_elsewhere_or_with_another_velocity_or_size_is_not_expected),
       cmocka_unit_test(another_obstacle_or_one_less_is_not_expected),
       cmocka_unit_test(a_target_that_turns_or_jumps_is_not_expected),
+      cmocka_unit_test(a_posture_in_place_of_a_position_or_another_one_is_not_expected),
       cmocka_unit_test(an_arm_off_its_path_or_in_another_mode_is_not_expected),
       cmocka_unit_test(nothing_is_expected_before_a_forecast),
   };

@@ -80,6 +80,20 @@ void every_value_of_a_scenario_is_read(void**) {
   check_near(*s.published.axis_distance_m, 0.2, 0);
 }
 
+void a_target_may_be_a_posture(void**) {
+  const std::string target =
+      "target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0, 0], "
+      "angular_velocity_radps: [0, 0, 1]}";
+  const Scenario s = load(changed(target, "target: {joints_rad: [0, 1, 2, 3, 4, 5, -6]}"));
+  assert_int_equal(s.world.target.joints_rad.size(), 7);
+  check_near(s.world.target.joints_rad[6], -6, 0);
+  for (const std::string wrong :
+       {"{joints_rad: []}", "{joints_rad: [.nan]}", "{joints_rad: [1], position_m: [1, 2, 3]}"}) {
+    const std::string message = message_of([&] { load(changed(target, "target: " + wrong)); });
+    check(one_line_with(message, {"a.yaml", "target"}), "%s: '%s'", wrong.c_str(), message.c_str());
+  }
+}
+
 void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
   const std::string two = ", waypoints: [[0.05, 1, 2, 3.5, 4, 5, 6], [0.2, 7, 8, 9, 0, 0, -1]]";
   const World curved_target = load(changed("velocity_mps: [0, 0.1, 0]", "velocity_mps: [0, 0.1, 0]" + two)).world;
@@ -309,6 +323,7 @@ void the_scenarios_of_the_paper_have_its_values(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_value_of_a_scenario_is_read),
+      cmocka_unit_test(a_target_may_be_a_posture),
       cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
       cmocka_unit_test(every_mistake_is_refused_with_one_line_that_names_file_and_key),
       cmocka_unit_test(files_that_are_no_scenario_are_refused_with_one_line),

@@ -77,6 +77,12 @@ struct RecordedRun {
     receive(inputs, encoded(message), 0.01 * static_cast<double>(cycles), target);
   }
 
+  void receive_joint_target() {
+    const test::Bytes bytes = encoded(test::joint_target_message(cycles + 1, JointVector::Constant(7, 0.4)));
+    assert_true(inputs.receive_joint_target({bytes.data(), bytes.size()}, 0.01 * static_cast<double>(cycles), target));
+    ++target.count;
+  }
+
   void cycle() {
     RecordedCycle recorded;
     recorded.arguments.seq = ++cycles;
@@ -154,6 +160,23 @@ void a_message_in_use_is_in_every_log_even_when_sent_only_once(void**) {
     assert_int_equal(events.count["TARGET"], 1);
     assert_int_equal(events.count["OBSTACLES"], 1);
     assert_true(test::agreeing_cycles(log) >= 1000);
+  }
+}
+
+void a_run_that_switches_between_postures_and_positions_replays_bit_for_bit(void**) {
+  for (int length = 200; length < 240; length += 5) {
+    RecordedRun run(1.0);
+    for (int i = 0; i < length; ++i) {
+      run.receive_obstacles(1);
+      if (i % 3 == 0) i / 30 % 2 ? run.receive_target() : run.receive_joint_target();
+      run.cycle();
+    }
+    assert_int_equal(static_cast<int>(run.state.supervision.mode), static_cast<int>(Mode::kTrack));
+    const std::string log = run.log();
+    assert_true(test::agreeing_cycles(log) >= 100);
+    Events events(log);
+    check(events.count["TARGET"] > 10 && events.count["JOINT_TARGET"] > 10, "%d and %d", events.count["TARGET"],
+          events.count["JOINT_TARGET"]);
   }
 }
 
@@ -285,6 +308,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_log_holds_every_message_and_cycle_of_its_seconds_in_order),
       cmocka_unit_test(a_message_in_use_is_in_every_log_even_when_sent_only_once),
+      cmocka_unit_test(a_run_that_switches_between_postures_and_positions_replays_bit_for_bit),
       cmocka_unit_test(a_run_among_jumping_obstacles_replays_bit_for_bit),
       cmocka_unit_test(the_statuses_in_a_log_equal_those_published_with_a_guide),
       cmocka_unit_test(the_largest_messages_fit_into_a_bounded_log),

@@ -188,13 +188,13 @@ void each_text_and_flag_sets_its_field(void**) {
   const Channels channels =
       load(
           "channels: {target: A, obstacles: B, arm_state: C, arm_command: D, controller_status: E, loop_timing: F, "
-          "other_joints: G, control: H, attachments: I}")
+          "other_joints: G, control: H, joint_target: I, attachments: J}")
           .channels;
   assert_string_equal(
       (channels.target + channels.obstacles + channels.arm_state + channels.arm_command + channels.controller_status +
-       channels.loop_timing + channels.other_joints + channels.control + channels.attachments)
+       channels.loop_timing + channels.other_joints + channels.control + channels.joint_target + channels.attachments)
           .c_str(),
-      "ABCDEFGHI");
+      "ABCDEFGHIJ");
   const Neighbours neighbours =
       load("neighbours: {publish: A, listen: [B, C], base_position_m: [1, 2, 3], base_rpy_rad: [0, 0, 1.5]}")
           .neighbours;

@@ -3,6 +3,7 @@
 #include <sidestep/controller_status_t.hpp>
 #include <sidestep/joint_command_t.hpp>
 #include <sidestep/joint_state_t.hpp>
+#include <sidestep/joint_target_t.hpp>
 #include <sidestep/named_joints_t.hpp>
 #include <sidestep/obstacles_t.hpp>
 #include <sidestep/target_t.hpp>
@@ -116,6 +117,13 @@ Fingerprint joint_command() {
       .add("joint_velocity", "double", {"num_joints"});
 }
 
+Fingerprint joint_target() {
+  return Fingerprint()
+      .add("utime", "int64_t")
+      .add("num_joints", "int32_t")
+      .add("joint_position", "double", {"num_joints"});
+}
+
 Fingerprint control() {
   return Fingerprint().add("utime", "int64_t").add("command", "int8_t").add("speed_scale", "double");
 }
@@ -154,6 +162,7 @@ void layouts_have_the_published_fingerprints(void**) {
       {"named_joints_t", sidestep::named_joints_t::getHash(), named_joints().value(), 0xb369b291b5836948},
       {"joint_command_t", sidestep::joint_command_t::getHash(), joint_command().value(), 0xbc0ffe2927412bea},
       {"attachments_t", sidestep::attachments_t::getHash(), attachments().value(), 0xe5286cfa7e9c4ff3},
+      {"joint_target_t", sidestep::joint_target_t::getHash(), joint_target().value(), 0xbf12364895a6d4ae},
       {"control_t", sidestep::control_t::getHash(), control().value(), 0x7686d491d38e67bc},
       {"controller_status_t", sidestep::controller_status_t::getHash(), controller_status().value(),
        0xef5f88d512318560},
