@@ -97,6 +97,15 @@ def link_poses(links, q_rad):
     return poses
 
 
+def goal_m(links, target):
+    """Where the tool shall be, base frame, by a target_t or a joint_target_t; None for another number of joints."""
+    if hasattr(target, "position"):
+        return np.array(target.position)
+    if target.num_joints != sum(joint.axis is not None for joint in links):
+        return None
+    return link_poses(links, target.joint_position)[-1][0]
+
+
 def joint_points(links, q_rad):
     """N x 3, m, base frame: the origins of the base and of every joint; the tip is the last."""
     return np.array([position for position, _ in link_poses(links, q_rad)])

@@ -19,6 +19,7 @@ from errors import reason
 
 FRAME_S = 0.03   # least time between two frames of the replay
 MOST_FRAMES = 4000
+GOALS = ("TARGET", "JOINT_TARGET")
 
 
 class NoRun(Exception):
@@ -35,6 +36,8 @@ def samples(file, channels=None):
         kind = channels.get(event.channel)
         if kind is None or (message := wire.decoded(kind, event.data)) is None:
             continue
+        if kind in GOALS:  # the newest of both kinds counts
+            latest = {other: value for other, value in latest.items() if other not in GOALS}
         latest[kind] = message
         if kind == "CONTROLLER_STATUS" and "ARM_STATE" in latest:
             start_us = event.timestamp if start_us is None else start_us
@@ -75,9 +78,10 @@ def obstacle_row(obstacle):
 def frame_of(messages, chain, shapes):
     """One frame of the replay."""
     links = arm.link_poses(chain, messages["ARM_STATE"].joint_position)
-    target, obstacles = messages.get("TARGET"), messages.get("OBSTACLES")
+    target, obstacles = messages.get("TARGET") or messages.get("JOINT_TARGET"), messages.get("OBSTACLES")
+    goal = target and arm.goal_m(chain, target)
     return {"arm": shape_poses(shapes, links), "tool": numbers(links[-1][0]),
-            "target": numbers(target.position) if target else None,
+            "target": None if goal is None else numbers(goal),
             "obstacles": [obstacle_row(obstacle) for obstacle in obstacles.obstacles] if obstacles else []}
 
 

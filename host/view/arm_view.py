@@ -8,7 +8,7 @@ import runs
 import scene
 from wire import obstacle_t
 
-KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "CONTROLLER_STATUS"]  # the messages that the view shows
+KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "JOINT_TARGET", "CONTROLLER_STATUS"]  # the messages that are shown
 SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
           "cylinder": (obstacle_t.CYLINDER, ["radius_m", "height_m"]), "box": (obstacle_t.BOX, [])}
 
@@ -67,8 +67,12 @@ class ArmView:
                 for position, rotation in arm.link_poses(self.chain, state.joint_position)]
 
     def target(self, latest):
-        message = latest.get(self.names["TARGET"])
-        return self.point(message.position) if message else None
+        """Where the tool shall be, by the newest target or posture; None without either."""
+        kinds = [kind for kind in ("TARGET", "JOINT_TARGET") if self.names[kind] in latest]
+        if not kinds:
+            return None
+        newest = max(kinds, key=lambda kind: latest.received_s[self.names[kind]])
+        return None if (goal := arm.goal_m(self.chain, latest[self.names[newest]])) is None else self.point(goal)
 
     def guide(self, latest):
         status = latest.get(self.names["CONTROLLER_STATUS"])

@@ -25,6 +25,9 @@ void a_drawing_is_coloured_by_the_true_clearance(void**) {
 void obstacles_received_by_an_arm_are_drawn_in_the_world_frame(void**) {
   passes("places");
 }
+void a_posture_is_drawn_where_it_puts_the_tool(void**) {
+  passes("goals");
+}
 void the_surroundings_of_a_configuration_are_drawn(void**) {
   passes("surroundings");
 }
@@ -66,6 +69,7 @@ int main() {
       cmocka_unit_test_teardown(obstacles_received_by_an_arm_are_drawn_in_the_world_frame,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_surroundings_of_a_configuration_are_drawn, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_posture_is_drawn_where_it_puts_the_tool, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),

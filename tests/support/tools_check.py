@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 from unittest import mock
 
+import lcm
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -98,6 +99,32 @@ def places():
     drawn = left.in_world(bar)
     assert np.allclose(drawn.position, [-0.8, -0.2, 0.7]) and np.allclose(drawn.velocity, [0, -1, 0]), drawn.position
     assert np.allclose(np.abs(arm.rotation_of_quaternion(drawn.quaternion)[:, 2]), [1, 0, 0])
+
+
+def goals():
+    """The star of a target is where the newest target or posture puts the tool."""
+    lwa3 = ArmView(ROOT / "firmware/config/lwa3.yaml", LWA3)
+    target, posture = wire.target_t(), wire.joint_target_t()
+    target.position = [1.0, 2.0, 3.0]
+    posture.num_joints, posture.joint_position = 7, [0, math.pi / 2, 0, -math.pi / 2, 0, 0, 0]
+    home_m = [-0.328, 0, 0.9137]
+    latest = type("Latest", (dict,), {})({"TARGET": target, "JOINT_TARGET": posture})
+    for last, goal_m in (("JOINT_TARGET", home_m), ("TARGET", [1, 2, 3])):
+        latest.received_s = {"TARGET": 1, "JOINT_TARGET": 1} | {last: 2}
+        assert np.allclose(lwa3.target(latest), goal_m, atol=1e-4), lwa3.target(latest)
+    posture.num_joints = 6
+    assert arm.goal_m(lwa3.chain, posture) is None
+    with tempfile.TemporaryDirectory() as name:
+        log, state, status = lcm.EventLog(f"{name}/log", "w"), wire.joint_state_t(), wire.controller_status_t()
+        posture.num_joints = state.num_joints = 7
+        state.joint_position, state.joint_velocity = posture.joint_position, [0.0] * 7
+        for channel, message in (("ARM_STATE", state), ("TARGET", target), ("CONTROLLER_STATUS", status),
+                                 ("JOINT_TARGET", posture), ("CONTROLLER_STATUS", status), ("TARGET", target),
+                                 ("CONTROLLER_STATUS", status)):
+            log.write_event(0, channel, message.encode())
+        log.close()
+        shown = [report.frame_of(messages, lwa3.chain, [])["target"] for _, messages in report.samples(f"{name}/log")]
+        assert np.allclose(shown, [[1, 2, 3], home_m, [1, 2, 3]], atol=1e-4), shown
 
 
 def surroundings():
@@ -293,7 +320,8 @@ def hostile_bytes():
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
                                               surroundings, log_becomes_page, log_replays, coordinates,
-                                              refusals, announcements, unknown_scenario, watched_texts, hostile_bytes)}
+                                              refusals, announcements, unknown_scenario, watched_texts, hostile_bytes,
+                                              goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
