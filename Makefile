@@ -5,6 +5,7 @@ SCENARIO ?= paper-c
 FAMILY   ?= all
 COUNT    ?= 500
 SEED     ?= 1
+PORT     ?= 7000
 LAW      ?= sidestep
 LOG      ?= $(shell ls -t $(BUILD)/runs/*-realtime.lcmlog 2>/dev/null | head -1)
 MAKEFLAGS += -j$(shell nproc) --no-print-directory
@@ -141,8 +142,11 @@ install-test: all $(SHARED) $(READY).test $(READY).deb $(READY).install ## test 
 
 ##@ Viewing
 
-view: all $(VIEW) ## play SCENARIO live in the browser, repeated until Ctrl-C
-	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml
+view: all $(VIEW) ## play SCENARIO live in the browser on PORT (7000), repeated until Ctrl-C
+	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml --port $(PORT)
+
+play: all $(VIEW) ## show an arm without target and obstacles, and the commands that send them
+	@$(PYTHON) host/view/show.py host/scenarios/play.yaml --port $(PORT)
 
 view-test: all $(VIEW) ## check a screenshot of the view in headless Chromium, build/figures/view.png
 	@$(PYTHON) tests/view/picture.py
@@ -169,7 +173,7 @@ help: ## print this list
 	@awk -F '"' '/^title:/ {name = FILENAME; sub(".*/", "", name); sub(".yaml", "", name); printf "  %-17s %s\n", name, $$2}' \
 	  host/scenarios/*.yaml
 
-.PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view view-test spy report lint clean help
+.PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view play view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 ifeq ($(SETUP),no)

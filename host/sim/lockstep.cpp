@@ -69,7 +69,7 @@ Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, c
       if (simulation.runs.size() > 1) utime = kCommonStart_us;
       first_answered_us = utime;
     }
-    if (simulation.tracked() || simulation.tracking()) simulation.record();
+    if (simulation.tracked() || simulation.ready()) simulation.record();
     if (simulation.complete()) return Outcome::kDone;
     if (!simulation.tracked() && utime - first_answered_us > patience_us) return Outcome::kNeverTracked;
     for (Run& run : simulation.runs) run.plant.advance(period_us);

@@ -89,6 +89,7 @@ int simulate(const Options& options) {
     channels.push_back(scenario.channels);
   }
   SimWire wire(options.lcm_url, options.log_file, channels);
+  for (size_t arm = 0; arm < runs.size(); ++arm) wire.leave_to_others(arm, runs[arm].scenario().world);
   Simulation simulation(std::move(runs), ProgressLine(options.quiet, options.lockstep));
   const auto loop = options.lockstep ? run_lockstep : run_realtime;
   const Outcome outcome = loop(simulation, wire, options.patience_s, interrupted);

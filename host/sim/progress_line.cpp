@@ -34,6 +34,18 @@ std::string foresight_text(const Status& status) {
   return status.foresight == 2 ? ", no guide found" : "";
 }
 
+/// Empty without a target.
+std::string target_text(const Row& row) {
+  return row.world.target ? fmt::format("target {:.3f} m  ", row.target_distance_m) : "";
+}
+
+/// Empty where the obstacles are those of other processes.
+std::string clearance_text(const Row& row) {
+  const double clearance_m = std::min(row.nearest.clearance_m, row.neighbour_m);
+  if (clearance_m < kNothingNear) return fmt::format("clearance {:.3f} m  ", clearance_m);
+  return row.world.obstacles_from_others ? "" : "no obstacle  ";
+}
+
 std::string bar(double done) {
   constexpr int kWidth = 20;
   const int filled = static_cast<int>(kWidth * std::clamp(done, 0.0, 1.0));
@@ -81,13 +93,12 @@ void ProgressLine::show_waiting(const std::string& for_what) {
 void ProgressLine::show_running(const std::vector<const Row*>& arms, double duration_s) {
   if (!due()) return;
   const double t_s = arms.front()->t_s;
-  std::string line = fmt::format("{} {:.2f}/{:.2f} s", bar(t_s / duration_s), t_s, duration_s);
+  std::string line = duration_s > 0.0 ? fmt::format("{} {:.2f}/{:.2f} s", bar(t_s / duration_s), t_s, duration_s)
+                                      : fmt::format("{:.2f} s", t_s);
   for (const Row* row : arms) {
-    const double clearance_m = std::min(row->nearest.clearance_m, row->neighbour_m);
-    line += fmt::format("  {}target {:.3f} m  {}  {}{}  cycle {:.0f} us", row->arm.empty() ? "" : row->arm + ": ",
-                        row->target_distance_m,
-                        clearance_m < kNothingNear ? fmt::format("clearance {:.3f} m", clearance_m) : "no obstacle",
-                        name_of(row->status.mode), foresight_text(row->status), row->status.cycle_time_s * 1e6);
+    line += fmt::format("  {}{}{}{}{}  cycle {:.0f} us", row->arm.empty() ? "" : row->arm + ": ", target_text(*row),
+                        clearance_text(*row), name_of(row->status.mode), foresight_text(row->status),
+                        row->status.cycle_time_s * 1e6);
   }
   show(line);
 }

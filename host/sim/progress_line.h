@@ -17,7 +17,7 @@ class ProgressLine {
   /// Before t = 0.
   void show_waiting(const std::string& for_what);
 
-  /// From t = 0 on; one row per arm.
+  /// From t = 0 on; one row per arm. duration_s: 0 when endless.
   void show_running(const std::vector<const Row*>& arms, double duration_s);
   /// Ends the line, so that later output starts on a new line.
   void end();

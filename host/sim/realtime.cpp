@@ -43,7 +43,8 @@ class RealTimeArm {
 
   void publish_world(int64_t due_us) {
     const World& world = run_.world();
-    if (const auto target = sensing_.target(world.target)) wire_.publish(arm_, *target, due_us);
+    if (world.target)
+      if (const auto target = sensing_.target(*world.target)) wire_.publish(arm_, *target, due_us);
     if (const auto obstacles = sensing_.obstacles(world.obstacles)) wire_.publish(arm_, *obstacles, due_us);
     if (world.grip) wire_.publish(arm_, *world.grip, due_us);
   }
@@ -101,7 +102,7 @@ class RealTimeLoop {
 
   void receive(const ReceivedMessage& received, int64_t at_us) {
     const int64_t effective_us = arms_[received.arm].receive(received.message, at_us);
-    if (started_ || !simulation_.tracking()) return;
+    if (started_ || !simulation_.ready()) return;
     started_ = true;
     origin_us_ = effective_us;
     tick_ = 0;

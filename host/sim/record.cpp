@@ -25,6 +25,12 @@ class Line {
   std::string text_;
 };
 
+/// NaN without a target.
+Eigen::Vector3d target_m(const World& world) {
+  if (world.target) return world.target->motion.position_m;
+  return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
 std::string per_joint(const std::string& pattern, int joints) {
   std::string names;
   for (int i = 1; i <= joints; ++i) names += fmt::format(fmt::runtime("," + pattern), i);
@@ -49,7 +55,7 @@ std::string header(int joints, int obstacles) {
 
 void evaluate(Row& row, const Truth& truth) {
   row.tool_m = truth.tool_m();
-  row.target_distance_m = (row.world.target.motion.position_m - row.tool_m).norm();
+  row.target_distance_m = (target_m(row.world) - row.tool_m).norm();
   row.nearest = truth.nearest_in(row.world);
   row.axis_distance_m = truth.axis_distance_m(row.world.obstacles);
   row.nearest_links = truth.nearest_links(kSelfRange_m);
@@ -63,7 +69,7 @@ CsvFile::CsvFile(const std::string& file, int joints, int obstacles) : file_(fil
 void CsvFile::write(const Row& row, const Truth& truth) {
   Line line;
   line.add(row.t_s).add(row.q_rad).add(row.qd_radps).add(row.command_radps);
-  line.add(row.tool_m).add(row.world.target.motion.position_m);
+  line.add(row.tool_m).add(target_m(row.world));
   line.add(row.target_distance_m).add(row.nearest.clearance_m).add(row.axis_distance_m);
   for (const Obstacle& obstacle : row.world.obstacles) {
     line.add(obstacle.motion.position_m).add(truth.axis_distance_m(obstacle)).add(truth.clearance_m(obstacle));

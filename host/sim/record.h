@@ -21,7 +21,7 @@ struct Row {
   Status status;
   World world;
   Eigen::Vector3d tool_m = Eigen::Vector3d::Zero();
-  double target_distance_m = 0.0;
+  double target_distance_m = 0.0;  ///< NaN without a target
   Nearest nearest;
   double axis_distance_m = kNothingNear;
   double neighbour_m = kNothingNear;  ///< clearance to the links of other arms

@@ -24,8 +24,8 @@ Run::Run(const Scenario& scenario, const std::string& csv_file)
 }
 
 void Run::place_target() {
-  Target& target = scenario_.world.target;
-  if (target.joints_rad.size() == 0) return;
+  if (!scenario_.world.target || scenario_.world.target->joints_rad.size() == 0) return;
+  Target& target = *scenario_.world.target;
   if (truth_.joints() != target.joints_rad.size()) {
     throw std::runtime_error(fmt::format("{}: target.joints_rad: has {} values, the arm has {} joints", scenario_.file,
                                          target.joints_rad.size(), truth_.joints()));
@@ -41,6 +41,11 @@ void Run::receive(const ControllerMessage& message) {
   }
   const auto& command = std::get<Command>(message);
   if (plant.command(command.qd_radps)) summary_.add(command);
+}
+
+bool Run::ready() const {
+  if (!status_) return false;
+  return status_->mode == Mode::kTrack || (status_->mode == Mode::kHold && !scenario_.world.target);
 }
 
 void Run::measure() {
@@ -77,7 +82,9 @@ std::string Run::waits_for() const {
   if (!status_)
     return fmt::format("{}a controller: no message on {} and {} yet", name, scenario_.channels.arm_command,
                        scenario_.channels.controller_status);
-  return name + "the controller to track; its status: " + (status_->message.empty() ? "(empty)" : status_->message);
+  const char* mode = scenario_.world.target ? "track" : "hold";
+  return fmt::format("{}the controller to {}; its status: ", name, mode) +
+         (status_->message.empty() ? "(empty)" : status_->message);
 }
 
 void Run::close_csv() {

@@ -19,9 +19,11 @@ class Run {
 
   void receive(const ControllerMessage& message);
 
+  /// t = 0 may come: the controller tracks, or holds where the scenario has no target.
+  bool ready() const;
   /// True from t = 0 on.
   bool tracked() const { return summary_.rows() > 0; }
-  bool complete() const { return summary_.rows() > scenario_.periods; }
+  bool complete() const { return !scenario_.endless() && summary_.rows() > scenario_.periods; }
 
   /// Index of the coming control period.
   int period() const { return summary_.rows(); }

@@ -75,6 +75,7 @@ void read_times(YamlSection& section, Scenario& scenario) {
   const int rate_hz = section.has("rate_hz") ? section.whole("rate_hz", {1, 1000}) : 100;
   if (1'000'000 % rate_hz != 0) section.fail("rate_hz", "the period must be a whole number of microseconds");
   scenario.period_us = 1'000'000 / rate_hz;
+  if (!section.has("duration_s")) return;
   const double periods = section.number("duration_s", {0.0, 1e6}) * rate_hz;
   scenario.periods = static_cast<int>(std::lround(periods));
   if (scenario.periods < 1 || std::abs(periods - scenario.periods) > 1e-6) {
@@ -88,7 +89,7 @@ void read_arm(YamlSection& section, Scenario& scenario) {
   scenario.controller_config = section.text("config");
   scenario.start_rad = section.numbers("start_rad", 1, kMaxJoints, {-100.0, 100.0});
   scenario.plant = read_plant(section.section("plant"), static_cast<int>(scenario.start_rad.size()));
-  scenario.world.target = read_target(section.section("target"));
+  if (section.has("target")) scenario.world.target = read_target(section.section("target"));
   if (scenario.controller_config == kNoConfig) return;
   const ArmSetup setup = load_arm_setup(find(section, scenario.file, "config", scenario.controller_config));
   scenario.robot.package_path = setup.package_path;
@@ -96,6 +97,15 @@ void read_arm(YamlSection& section, Scenario& scenario) {
   scenario.channels = setup.channels;
   scenario.world_from_base = setup.world_from_base;
   scenario.world.surroundings = setup.surroundings;
+}
+
+// An expectation that nothing can break is a mistake.
+void check_expectations(const YamlSection& root, const Scenario& scenario) {
+  const Expectations& expect = scenario.expect;
+  if (root.has("expect") && scenario.endless()) root.fail("expect", "needs duration_s: it is checked at the end");
+  if (expect.final_distance_max_m && !scenario.world.target) root.fail("expect.final_distance_max_m", "needs a target");
+  if ((expect.clearance_min_m || expect.axis_distance_min_m) && scenario.world.obstacles_from_others)
+    root.fail("expect", "clearances need obstacles ([] for none)");
 }
 
 // The list `arms`. Targets and obstacles are given in the world frame; each scenario has them in its base frame.
@@ -121,7 +131,8 @@ std::vector<Scenario> load_scenario(const std::string& file) {
   scenario.title = root.text("title");
   read_times(root, scenario);
   if (root.has("sensing")) scenario.sensing = read_sensing(root.section("sensing"));
-  scenario.world.obstacles = read_obstacles(root);
+  scenario.world.obstacles_from_others = !root.has("obstacles");
+  if (root.has("obstacles")) scenario.world.obstacles = read_obstacles(root);
   if (root.has("expect")) scenario.expect = read_expectations(root.section("expect"));
   if (root.has("published")) scenario.published = read_published(root.section("published"));
   std::vector<Scenario> arms{scenario};
@@ -131,6 +142,7 @@ std::vector<Scenario> load_scenario(const std::string& file) {
     read_arm(root, arms.front());
     arms.front().grasp = read_grasp(root, scenario.world.obstacles);
   }
+  for (const Scenario& arm : arms) check_expectations(root, arm);
   root.finish();
   return arms;
 }

@@ -46,7 +46,7 @@ struct Scenario {
   Channels channels;
   Eigen::Isometry3d world_from_base = Eigen::Isometry3d::Identity();
   int64_t period_us = 10'000;
-  int periods = 0;  ///< the scenario runs from t = 0 to periods * period
+  int periods = 0;  ///< the scenario runs from t = 0 to periods * period; 0: without end
   JointVector start_rad;
   PlantSpec plant;
   SensingSpec sensing;
@@ -58,14 +58,17 @@ struct Scenario {
   double period_s() const { return static_cast<double>(period_us) / 1e6; }
   /// Time of the k-th control period.
   double time_s(int k) const { return static_cast<double>(k * period_us) / 1e6; }
-  double duration_s() const { return time_s(periods); }
+  bool endless() const { return periods == 0; }
+  double duration_s() const { return time_s(periods); }  ///< 0 when endless
 };
 
 /// Reads a scenario file and returns one scenario per arm. The file of a single arm is in its base frame. In a file
 /// with the list `arms`, the arms share duration, obstacles and expectations, in the world frame of their
-/// configurations. The files robot.urdf and config are searched from the scenario's folder upwards
-/// (firmware/base/find_file.h). Throws std::runtime_error, one line that names file and key, when a value is missing,
-/// unknown, of the wrong size, not finite or out of range.
+/// configurations. Optional are: `duration_s`, without it the scenario runs until it is interrupted; `target` and
+/// `obstacles`, without them other processes send TARGET and OBSTACLES (see SimWire::leave_to_others). The files
+/// robot.urdf and config are searched from the scenario's folder upwards (firmware/base/find_file.h). Throws
+/// std::runtime_error, one line that names file and key, when a value is missing, unknown, of the wrong size, not
+/// finite or out of range.
 std::vector<Scenario> load_scenario(const std::string& file);
 
 }  // namespace sidestep::sim

@@ -1,22 +1,15 @@
 #include "host/sim/simulation.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace sidestep::sim {
-namespace {
-
-bool tracks(const Run& run) {
-  return run.status() && run.status()->mode == Mode::kTrack;
-}
-
-}  // namespace
-
 bool Simulation::answered() const {
   return std::all_of(runs.begin(), runs.end(), [](const Run& run) { return run.status().has_value(); });
 }
 
-bool Simulation::tracking() const {
-  return std::all_of(runs.begin(), runs.end(), tracks);
+bool Simulation::ready() const {
+  return std::all_of(runs.begin(), runs.end(), std::mem_fn(&Run::ready));
 }
 
 void Simulation::record() {
@@ -29,7 +22,7 @@ void Simulation::record() {
 }
 
 std::string Simulation::waits_for() const {
-  return std::find_if_not(runs.begin(), runs.end() - 1, tracks)->waits_for();
+  return std::find_if_not(runs.begin(), runs.end() - 1, std::mem_fn(&Run::ready))->waits_for();
 }
 
 }  // namespace sidestep::sim

@@ -13,14 +13,14 @@ enum class Outcome { kDone, kInterrupted, kNeverTracked, kLost };
 /// A controller that sends no message for this time is lost.
 constexpr int64_t kLostAfter_us = 5'000'000;
 
-/// The runs of all arms of a scenario, on one clock. t = 0 is the first period in which all controllers track.
+/// The runs of all arms of a scenario, on one clock. t = 0 is the first period in which all runs are ready().
 class Simulation {
  public:
   /// At least one run; runs[k] uses the channels of arm k of the wire.
   Simulation(std::vector<Run> all, const ProgressLine& progress) : runs(std::move(all)), progress_(progress) {}
 
   bool answered() const;  ///< every controller has sent a status
-  bool tracking() const;  ///< the latest status of every controller is TRACK
+  bool ready() const;     ///< every run is
   bool tracked() const { return runs.front().tracked(); }
   bool complete() const { return runs.front().complete(); }
 
@@ -46,7 +46,7 @@ class Simulation {
 /// clock until all controllers have answered and on the arms' clock from then on.
 Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, const std::atomic<bool>& interrupted);
 
-/// Runs on the monotonic clock; t = 0 is the arrival of the status with which all controllers track.
+/// Runs on the monotonic clock; t = 0 is the arrival of the status with which all runs are ready().
 Outcome run_realtime(Simulation& simulation, SimWire& wire, double patience_s, const std::atomic<bool>& interrupted);
 
 }  // namespace sidestep::sim

@@ -101,7 +101,8 @@ std::string Summary::text(const Scenario& scenario) const {
   const int64_t skipped = last_.skipped_cycles - skipped_before_;
   const double mean_us = rows_ > 0 ? cycle_time_total_s_ / rows_ * 1e6 : 0.0;
   std::string text = scenario.title + (scenario.arm.empty() ? "\n" : ": " + scenario.arm + '\n');
-  text += fmt::format("  contact                   {}\n", touches() ? "YES" : "no");
+  const std::string without = scenario.world.obstacles_from_others ? ", obstacles of other processes not measured" : "";
+  text += fmt::format("  contact                   {}{}\n", touches() ? "YES" : "no", without);
   text += fmt::format("  min clearance             {}   {}\n", metres(clearance_m_), nearest_);
   if (neighbour_m_ < kNothingNear) text += fmt::format("  min clearance to arms     {:.4f} m\n", neighbour_m_);
   const std::string links =
@@ -109,11 +110,13 @@ std::string Summary::text(const Scenario& scenario) const {
   text += fmt::format("  min between links         {}\n", links);
   text += fmt::format("  min centre to axis        {}{}\n", metres(axis_distance_m_),
                       paper_figure(scenario.published.axis_distance_m));
-  text += fmt::format("  final target distance     {:.6f} m{}\n", final_distance_m_,
-                      paper_figure(scenario.published.final_distance_m));
+  if (scenario.world.target)
+    text += fmt::format("  final target distance     {:.6f} m{}\n", final_distance_m_,
+                        paper_figure(scenario.published.final_distance_m));
   text += fmt::format("  max joint speed           {:.4f} rad/s\n", joint_speed_radps_);
   text += fmt::format("  max command acceleration  {:.3f} rad/s2\n", joint_acceleration_radps2_);
-  text += fmt::format("  cycles                    {} of {}, {} skipped\n", rows_, scenario.periods + 1, skipped);
+  const std::string of = scenario.endless() ? "" : fmt::format(" of {}", scenario.periods + 1);
+  text += fmt::format("  cycles                    {}{}, {} skipped\n", rows_, of, skipped);
   text += fmt::format("  CPU time, whole cycle     mean {:.1f} us, max {:.1f} us\n", mean_us, cycle_time_max_s_ * 1e6);
   if (last_.rejected_messages > 0) {
     text += fmt::format("  the controller rejected   {} messages\n", last_.rejected_messages);

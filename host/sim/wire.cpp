@@ -15,8 +15,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "host/sim/clock.h"
+
 namespace sidestep::sim {
 namespace {
+
+constexpr int64_t kOthersSilent_us = 1'000'000;  // then no other process sends obstacles any more
 
 static_assert(static_cast<int>(Mode::kWait) == controller_status_t::WAIT);
 static_assert(static_cast<int>(Mode::kHold) == controller_status_t::HOLD);
@@ -134,6 +138,12 @@ bool has_size_of_status(const uint8_t* bytes, int64_t size) {
   return size == at;
 }
 
+/// LCM delivers the simulator's own messages, too. All of these are the empty set.
+bool has_obstacles(const lcm::ReceiveBuffer& buffer) {
+  static const auto empty_size = static_cast<uint32_t>(obstacles_t{}.getEncodedSize());
+  return buffer.data_size > empty_size;
+}
+
 std::optional<Command> decode_command(const uint8_t* bytes, int size) {
   joint_command_t message;
   if (!has_size_of_command(bytes, size) || message.decode(bytes, 0, size) != size) return {};
@@ -169,12 +179,21 @@ struct SimWire::Network {
   struct Subscription {
     Network* network;
     size_t arm;
+    int64_t obstacles_heard_us = -kOthersSilent_us;  ///< from another process, on the monotonic clock
 
     void on_command(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
       network->receive(buffer, channel, arm, decode_command);
     }
     void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
       network->receive(buffer, channel, arm, decode_status);
+    }
+    void on_target_of_others(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      network->write_log(channel, buffer->data, static_cast<int>(buffer->data_size));
+    }
+    void on_obstacles(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+      if (!has_obstacles(*buffer)) return;
+      obstacles_heard_us = monotonic_us();
+      network->write_log(channel, buffer->data, static_cast<int>(buffer->data_size));
     }
   };
 
@@ -196,6 +215,19 @@ struct SimWire::Network {
       lcm.subscribe(channels[arm].controller_status, &Subscription::on_status, &subscription)
           ->setQueueCapacity(kQueueCapacity);
     }
+  }
+
+  void leave_to_others(size_t arm, const World& world) {
+    Subscription& subscription = subscriptions[arm];
+    if (!world.target) {
+      for (const std::string& channel : {channels[arm].target, channels[arm].joint_target})
+        lcm.subscribe(channel, &Subscription::on_target_of_others, &subscription);
+    }
+    if (world.obstacles_from_others) lcm.subscribe(channels[arm].obstacles, &Subscription::on_obstacles, &subscription);
+  }
+
+  bool others_send_obstacles(size_t arm) const {
+    return monotonic_us() - subscriptions[arm].obstacles_heard_us < kOthersSilent_us;
   }
 
   template <typename Decode>
@@ -246,8 +278,12 @@ SimWire::SimWire(const std::string& url, const std::string& log_file, const std:
     : network_(std::make_unique<Network>(url, log_file, arms)) {}
 SimWire::~SimWire() = default;
 
+void SimWire::leave_to_others(size_t arm, const World& world) {
+  network_->leave_to_others(arm, world);
+}
+
 void SimWire::publish(size_t arm, const World& world, int64_t utime) {
-  publish(arm, world.target, utime);
+  if (world.target) publish(arm, *world.target, utime);
   publish(arm, world.obstacles, utime);
   if (world.grip) publish(arm, *world.grip, utime);
 }
@@ -261,6 +297,7 @@ void SimWire::publish(size_t arm, const Target& target, int64_t utime) {
 }
 
 void SimWire::publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime) {
+  if (network_->others_send_obstacles(arm)) return;
   network_->publish(network_->channels[arm].obstacles, message_of(obstacles, utime), utime);
 }
 

@@ -26,7 +26,11 @@ class SimWire {
   SimWire(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms);
   ~SimWire();
 
-  /// TARGET or JOINT_TARGET, OBSTACLES and, where something is grasped, ATTACHMENTS.
+  /// What the world lacks comes from other processes. Their messages are logged. Obstacles: publish() sends the empty
+  /// set, which states that there are none, only while nobody else has sent any for 1 s.
+  void leave_to_others(size_t arm, const World& world);
+
+  /// TARGET or JOINT_TARGET if there is one, OBSTACLES and, where something is grasped, ATTACHMENTS.
   void publish(size_t arm, const World& world, int64_t utime);
   void publish(size_t arm, const Target& target, int64_t utime);
   void publish(size_t arm, const std::vector<Obstacle>& obstacles, int64_t utime);

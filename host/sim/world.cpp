@@ -62,14 +62,14 @@ Eigen::Isometry3d Motion::base_from_body() const {
 
 World advanced(const World& world, double dt_s) {
   World result = world;
-  advance(result.target.motion, dt_s);
+  if (result.target) advance(result.target->motion, dt_s);
   for (Obstacle& obstacle : result.obstacles) advance(obstacle.motion, dt_s);
   return result;
 }
 
 World transformed(const Eigen::Isometry3d& b_from_a, const World& world) {
   World result = world;
-  result.target.motion = transformed(b_from_a, result.target.motion);
+  if (result.target) result.target->motion = transformed(b_from_a, result.target->motion);
   for (Obstacle& obstacle : result.obstacles) obstacle.motion = transformed(b_from_a, obstacle.motion);
   return result;
 }

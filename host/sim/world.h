@@ -49,7 +49,8 @@ struct Grip {
 
 /// Target and obstacles of an arm at one instant.
 struct World {
-  Target target;
+  std::optional<Target> target;        ///< absent: another process sends one, or nobody
+  bool obstacles_from_others = false;  ///< other processes send the obstacles; `obstacles` is empty
   std::vector<Obstacle> obstacles;
   std::vector<Obstacle> surroundings;  ///< at rest; in the configuration of the controller, not in messages
   std::optional<Grip> grip;            ///< absent in a scenario in which nothing is grasped

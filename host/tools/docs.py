@@ -164,7 +164,7 @@ def main():
     parser.add_argument("--scenario", action="append", metavar="NAME",
                         help="only what is about this scenario (may be repeated)")
     arguments = parser.parse_args()
-    check, names = arguments.check, arguments.scenario or runs.scenario_names()
+    check, names = arguments.check, arguments.scenario or runs.ending_scenarios()
     done, different = runs_of(names), []
     for file in PAGES:
         there = file.read_text()

@@ -7,7 +7,7 @@ import plots
 import runs
 import tradeoff
 
-SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in runs.scenario_names()]
+SCENARIOS = [runs.ROOT / f"host/scenarios/{name}.yaml" for name in runs.ending_scenarios()]
 
 
 def draw(scenario_file):

@@ -53,6 +53,8 @@ def main():
     scenario_file = parser.parse_args().scenario.absolute()
     scenario, name = runs.load_scenario(scenario_file), scenario_file.stem
 
+    if "duration_s" not in scenario:
+        raise runs.RunFailed(f"{name} has no end: make play, or make view SCENARIO={name}")
     print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time", flush=True)
     record = runs.RECORDS / f"{name}-realtime.csv"
     code = runs.execute(scenario_file, "sidestep", record, lockstep=False, log=record.with_suffix(".lcmlog"))

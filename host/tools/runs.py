@@ -80,12 +80,19 @@ def scenario_names():
     return sorted(file.stem for file in (ROOT / "host/scenarios").glob("*.yaml"))
 
 
+def ending_scenarios():
+    """The names of the scenarios that end by themselves."""
+    return [name for name in scenario_names() if "duration_s" in load(ROOT / f"host/scenarios/{name}.yaml")]
+
+
 def load_scenario(file):
     """A scenario. Only the keys that the scripts use are checked; the simulator checks the others."""
     if not Path(file).is_file():
         raise RunFailed(f"{shown(Path(file))}: no such scenario; there are {', '.join(scenario_names())}")
     scenario = load(file)
-    check(file, scenario, title=str, duration_s=(int, float))
+    check(file, scenario, title=str)
+    if "duration_s" in scenario:
+        check(file, scenario, duration_s=(int, float))
     if "arms" in scenario:
         check(file, scenario, arms=list)
     for arm in scenario.get("arms", [scenario]):
@@ -193,7 +200,7 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
         for name, command in commands.items():
             with open(logs[name], "w") as output:
                 processes[name] = start(command, output if lockstep or name != "sim" else None)
-        wait(processes, scenario["duration_s"] * (10 if lockstep else 1) + 60)
+        wait(processes, scenario.get("duration_s", np.inf) * (10 if lockstep else 1) + 60)
         lost = {name for name, process in processes.items() if name != "sim" and process.poll() is not None}
     finally:
         codes = {name: stop(process) for name, process in reversed(processes.items())}

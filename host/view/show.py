@@ -5,6 +5,7 @@ Starts Meldis, which serves the page, view.py, which publishes the drawing, and 
 """
 import argparse
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -14,8 +15,31 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "host/tools"))
 import runs
+from errors import reason
 
 PAUSE_S = 1.0  # between two runs
+COMMANDS = """In a second terminal:
+  cd {root}
+  build/venv/bin/python host/tools/send_target.py -0.5 -0.3 0.5              # Ctrl-C ends it, and any other sender
+  build/venv/bin/python host/tools/send_target.py -0.5 0 0.5 --circle 0.2
+  build/venv/bin/python host/tools/send_target.py -0.5 -0.3 0.5 --keys       # arrow keys, + and -
+In a third:
+  cd {root}
+  build/venv/bin/python host/tools/send_obstacles.py -0.5,-1,0.5,0.1,0,0.1,0  # one sphere, 0.1 m/s along y
+  build/venv/bin/python host/tools/send_obstacles.py --person
+  build/venv/bin/python host/tools/control.py pause                          # and: resume, resume --speed 0.3
+  build/venv/bin/python host/tools/watch.py
+"""
+
+
+def refuse_taken(port):
+    """RunFailed if another process listens on the port."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a port whose last user has ended is free
+        try:
+            probe.bind(("", port))
+        except OSError as error:
+            raise runs.RunFailed(f"port {port}: {reason(error)}; choose another with PORT=") from None
 
 
 @contextmanager
@@ -44,7 +68,10 @@ def main():
     arguments = parser.parse_args()
     scenario_file = arguments.scenario.absolute()
     scenario = runs.load_scenario(scenario_file)
+    refuse_taken(arguments.port)
     print(f"{scenario['title']}: open http://localhost:{arguments.port} (Ctrl-C ends)", flush=True)
+    if any("target" not in one for one in runs.arms_of(scenario)):
+        print(COMMANDS.format(root=ROOT), flush=True)
     with viewers(scenario, arguments.port) as started:
         while all(process.poll() is None for process in started):
             runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)

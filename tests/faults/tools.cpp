@@ -52,6 +52,12 @@ void senders_say_what_they_send(void**) {
 void the_error_about_an_unknown_scenario_lists_the_scenarios(void**) {
   passes("unknown_scenario");
 }
+void a_taken_port_is_refused_before_anything_starts(void**) {
+  passes("taken_port");
+}
+void the_commands_that_make_play_names_run(void**) {
+  passes("play_commands");
+}
 void a_silent_controller_is_shown_as_stale_and_no_value_as_a_word(void**) {
   passes("watched_texts");
 }
@@ -78,6 +84,8 @@ int main() {
       cmocka_unit_test_teardown(senders_say_what_they_send, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_error_about_an_unknown_scenario_lists_the_scenarios,
                                 sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_not_decoded, sidestep::test::kill_processes),

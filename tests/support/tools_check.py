@@ -4,9 +4,11 @@ import argparse
 import contextlib
 import io
 import math
+import os
 import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -28,6 +30,7 @@ import report
 import runs
 import send_obstacles
 import send_target
+import show
 import view
 import watch
 import wire
@@ -272,6 +275,34 @@ def unknown_scenario():
         assert str(error).startswith("host/scenarios/nope.yaml: no such scenario; there are closing-gap,"), error
 
 
+def taken_port():
+    """A port that another process listens on is refused before anything starts."""
+    with socket.socket() as other:
+        other.bind(("", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with mock.patch.object(sys, "argv", ["", str(ROOT / "host/scenarios/play.yaml"), "--port", str(port)]):
+            try:
+                show.main()
+                assert False
+            except runs.RunFailed as failure:
+                assert str(failure).startswith(f"port {port}: Address already in use") and "\n" not in str(failure)
+
+
+def play_commands():
+    """Each command that `make play` names runs. --keys needs a terminal, watch.py a controller: without them."""
+    network = os.environ | {"LCM_DEFAULT_URL": runs.private_url()}
+    commands = [line.split("#")[0].split() for line in show.COMMANDS.splitlines() if "host/tools" in line]
+    assert len(commands) == 7, commands
+    for command in commands:
+        words = [word for word in command if word != "--keys"] + ["--help"] * ("watch" in command[1])
+        process = subprocess.Popen(words, cwd=ROOT, env=network, stdout=subprocess.PIPE, text=True)
+        first = process.stdout.readline()
+        process.kill()
+        process.wait()
+        assert first.startswith(("sending ", "usage: watch.py")), (words, first)
+
+
 def watched_texts():
     """watch.py tells a silent controller from a living one, and has words for what is no number."""
     status = wire.controller_status_t()
@@ -320,8 +351,8 @@ def hostile_bytes():
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
                                               surroundings, log_becomes_page, log_replays, coordinates,
-                                              refusals, announcements, unknown_scenario, watched_texts, hostile_bytes,
-                                              goals)}
+                                              refusals, announcements, unknown_scenario, taken_port, play_commands,
+                                              watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

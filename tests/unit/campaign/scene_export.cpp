@@ -26,7 +26,7 @@ void an_exported_scene_is_the_same_scene_in_the_simulator(void**) {
       check_near(motion.position_m, scene.spheres[i].at(0.0).position_m, 0.0);
       check_near(motion.velocity_mps, scene.spheres[i].at(0.0).velocity_mps, 0.0);
     }
-    const auto& target = scenario.world.target;
+    const auto& target = *scenario.world.target;
     check_near(target.motion.position_m, target_at(scene, 0.0).position_m, 0.0);
     check(target.tracks_orientation == scene.family->hold_orientation, "%s", name);
     if (target.tracks_orientation)

@@ -73,6 +73,13 @@ class StandIn {
     lcm_.publish("CONTROLLER_STATUS", &message);
   }
 
+  void send_obstacle() {
+    wire::obstacles_t message{};
+    message.num_obstacles = 1;
+    message.obstacles.resize(1);
+    lcm_.publish("OBSTACLES", &message);
+  }
+
   void bytes(const std::string& channel, const std::vector<uint8_t>& data) {
     lcm_.publish(channel, data.data(), static_cast<unsigned>(data.size()));
   }
@@ -122,6 +129,7 @@ struct Result {
 Result simulate(const Scenario& scenario, bool lockstep, double patience_s = 5, const std::string& csv_file = "",
                 const std::atomic<bool>& interrupted = kNotInterrupted) {
   SimWire wire(url(), "", {scenario.channels});
+  wire.leave_to_others(0, scenario.world);
   std::vector<Run> runs;
   runs.emplace_back(scenario, csv_file);
   Simulation all(std::move(runs), ProgressLine(true, lockstep));
@@ -148,6 +156,38 @@ void lockstep_sends_all_messages_with_one_utime_and_keeps_the_world_at_rest_unti
     check_near(controller.obstacles[k].obstacles[0].velocity[0], 0.2, 0);
     check_near(controller.targets[k].position[0], 0.1 + 0.2 * t_s, 1e-15);
   }
+}
+
+/// The other process is silent from cycle 21 on; the simulator notices after cycle 30.
+void without_own_obstacles_the_empty_set_is_sent_while_nobody_else_sends_any(void**) {
+  StandIn controller([](StandIn& self, int64_t utime, int cycle) {
+    if (cycle == 20) self.send_obstacle();
+    if (cycle == 30) std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    self.command(utime, std::vector<double>(7, 0.0));
+    self.status(utime, false);
+  });
+  Scenario scenario = scenario_of(0.5);
+  scenario.world = {};
+  scenario.world.obstacles_from_others = true;
+  const Result result = simulate(scenario, true);
+  controller.stop();
+  assert_true(result.outcome == Outcome::kDone);  // without a target it starts in HOLD
+  assert_int_equal(controller.targets.size(), 0);
+  const std::vector<wire::obstacles_t>& sets = controller.obstacles;
+  assert_int_equal(std::count_if(sets.begin(), sets.end(), [](const auto& set) { return set.num_obstacles == 1; }), 1);
+  assert_int_equal(controller.arms.size(), 51);
+  assert_int_equal(sets.size(), 21 + 1 + 20);
+}
+
+void a_scenario_without_end_runs_until_it_is_interrupted(void**) {
+  std::atomic<bool> interrupted{false};
+  StandIn controller([&](StandIn& self, int64_t utime, int cycle) {
+    respond_well(self, utime, cycle);
+    if (cycle == 400) interrupted = true;
+  });
+  const Result result = simulate(scenario_of(0), true, 5, "", interrupted);
+  assert_true(result.outcome == Outcome::kInterrupted);
+  check(result.periods > 350, "%d periods", result.periods);
 }
 
 void the_plant_follows_each_command_over_one_period(void**) {
@@ -315,6 +355,8 @@ void real_time_lasts_its_duration_and_sends_the_arm_state_every_2_ms(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(lockstep_sends_all_messages_with_one_utime_and_keeps_the_world_at_rest_until_track),
+      cmocka_unit_test(without_own_obstacles_the_empty_set_is_sent_while_nobody_else_sends_any),
+      cmocka_unit_test(a_scenario_without_end_runs_until_it_is_interrupted),
       cmocka_unit_test(the_plant_follows_each_command_over_one_period),
       cmocka_unit_test(two_lockstep_runs_are_bit_identical),
       cmocka_unit_test(the_simulation_ends_when_no_controller_answers),

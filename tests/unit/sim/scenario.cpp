@@ -62,9 +62,9 @@ void every_value_of_a_scenario_is_read(void**) {
   check_near(s.plant.latency_s, 0.01, 0);
   check_near(s.plant.velocity_limit_radps, JointVector::Constant(7, 2), 0);
   check_near(s.plant.acceleration_limit_radps2[6], 7, 0);
-  assert_true(s.world.target.tracks_orientation);
-  check_near(s.world.target.motion.position_m, Vector3d(1, 2, 3), 0);
-  check_near(s.world.target.motion.orientation.x(), 1, 0);
+  assert_true(s.world.target->tracks_orientation);
+  check_near(s.world.target->motion.position_m, Vector3d(1, 2, 3), 0);
+  check_near(s.world.target->motion.orientation.x(), 1, 0);
   assert_int_equal(s.world.obstacles.size(), 3);
   const Obstacle &box = s.world.obstacles[0], &capsule = s.world.obstacles[1], &cylinder = s.world.obstacles[2];
   assert_int_equal(box.id, 4);
@@ -85,8 +85,8 @@ void a_target_may_be_a_posture(void**) {
       "target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0, 0], "
       "angular_velocity_radps: [0, 0, 1]}";
   const Scenario s = load(changed(target, "target: {joints_rad: [0, 1, 2, 3, 4, 5, -6]}"));
-  assert_int_equal(s.world.target.joints_rad.size(), 7);
-  check_near(s.world.target.joints_rad[6], -6, 0);
+  assert_int_equal(s.world.target->joints_rad.size(), 7);
+  check_near(s.world.target->joints_rad[6], -6, 0);
   for (const std::string wrong :
        {"{joints_rad: []}", "{joints_rad: [.nan]}", "{joints_rad: [1], position_m: [1, 2, 3]}"}) {
     const std::string message = message_of([&] { load(changed(target, "target: " + wrong)); });
@@ -99,8 +99,8 @@ void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
   const World curved_target = load(changed("velocity_mps: [0, 0.1, 0]", "velocity_mps: [0, 0.1, 0]" + two)).world;
   const World curved_bar = load(changed("velocity_mps: [0, 0, -1]", "velocity_mps: [0, 0, -1]" + two)).world;
   assert_null(curved_target.obstacles[1].motion.path.get());
-  assert_null(curved_bar.target.motion.path.get());
-  for (const Motion& motion : {curved_target.target.motion, curved_bar.obstacles[1].motion}) {
+  assert_null(curved_bar.target->motion.path.get());
+  for (const Motion& motion : {curved_target.target->motion, curved_bar.obstacles[1].motion}) {
     assert_non_null(motion.path.get());
     const Path& path = *motion.path;
     assert_int_equal(path.size(), 3);
@@ -133,6 +133,11 @@ const Mistake kMistakes[] = {
     {"duration_s: 1.5", "duration_s: 0", "duration_s", "whole number of periods"},
     {"duration_s: 1.5", "duration_s: 1.503", "duration_s", "whole number of periods"},
     {"duration_s: 1.5", "duration_s: 1e999", "duration_s", "finite"},
+    {"duration_s: 1.5\n", "", "expect", "needs duration_s"},
+    {"duration_s: 1.5", "duration_s: ~", "duration_s", "missing"},
+    {"target: {position_m: [1, 2, 3], velocity_mps: [0, 0.1, 0], quaternion: [0, 1, 0, 0], angular_velocity_radps: [0, "
+     "0, 1]}\n",
+     "", "expect.final_distance_max_m", "needs a target"},
     {"rate_hz: 200", "rate_hz: 300", "rate_hz", "microseconds"},
     {"rate_hz: 200", "rate_hz: 12.5", "rate_hz", "whole number"},
     {"rate_hz: 200", "rate_hz: fast", "rate_hz", "finite number"},
@@ -262,9 +267,9 @@ void each_of_several_arms_has_the_world_in_its_base_frame(void**) {
   assert_string_equal(left.arm.c_str(), "left");
   assert_string_equal(left.channels.arm_state.c_str(), "LEFT_ARM_STATE");
   assert_string_equal(right.channels.controller_status.c_str(), "RIGHT_CONTROLLER_STATUS");
-  check_near(left.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
-  check_near(right.world.target.motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
-  check_near(advanced(left.world, 3).target.motion.position_m, Vector3d(-0.55, 0.35, 0.75), 1e-15);
+  check_near(left.world.target->motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
+  check_near(right.world.target->motion.position_m, Vector3d(-0.55, -0.35, 0.75), 1e-15);
+  check_near(advanced(left.world, 3).target->motion.position_m, Vector3d(-0.55, 0.35, 0.75), 1e-15);
   check_near(left.world.obstacles[0].motion.velocity_mps, Vector3d(0, -0.2, 0), 1e-15);
   check_near(right.world.obstacles[0].motion.velocity_mps, Vector3d(0, 0.2, 0), 1e-15);
   const Vector3d axis = left.world.obstacles[1].motion.orientation * Vector3d::UnitZ();
@@ -281,6 +286,18 @@ void the_surroundings_of_the_configuration_are_part_of_the_world(void**) {
   check_near(wall.solid.size_m, Vector3d(0.05, 2.5, 2.0), 0);
   check_near(wall.motion.position_m, Vector3d(0.6, 0, 1.0), 0);
   assert_int_equal(world.all()[3].id, -3);
+}
+
+void what_a_scenario_lacks_comes_from_other_processes(void**) {
+  const Scenario play = load_scenario("host/scenarios/play.yaml").front();
+  assert_true(play.endless());
+  check_near(play.duration_s(), 0, 0);
+  assert_false(play.world.target.has_value());
+  assert_true(play.world.obstacles_from_others && play.world.obstacles.empty());
+  const Scenario whole = load(kGood);
+  assert_false(whole.endless() || whole.world.obstacles_from_others);
+  const Scenario empty = load_scenario("host/scenarios/paper-a.yaml").front();  // obstacles: []
+  assert_false(empty.world.obstacles_from_others);
 }
 
 void the_default_rate_is_100_hz(void**) {
@@ -300,10 +317,10 @@ void the_scenarios_of_the_paper_have_its_values(void**) {
   check_near(b.duration_s(), 8, 0);
   check_near(c.duration_s(), 2.8, 0);
   assert_int_equal(a.world.obstacles.size(), 0);
-  check_near(a.world.target.motion.position_m, Vector3d(0, 0.15, 1), 0);
-  check_near(a.world.target.motion.velocity_mps, Vector3d(0, 0.2, 0), 0);
-  check_near(b.world.target.motion.position_m, Vector3d(0.4, 0.4, 0.8), 0);
-  check_near(c.world.target.motion.velocity_mps, Vector3d(0.2, 0, 0), 0);
+  check_near(a.world.target->motion.position_m, Vector3d(0, 0.15, 1), 0);
+  check_near(a.world.target->motion.velocity_mps, Vector3d(0, 0.2, 0), 0);
+  check_near(b.world.target->motion.position_m, Vector3d(0.4, 0.4, 0.8), 0);
+  check_near(c.world.target->motion.velocity_mps, Vector3d(0.2, 0, 0), 0);
   for (const Scenario* s : {&b, &c}) {
     assert_int_equal(s->world.obstacles.size(), 3);
     check_near(s->world.obstacles[2].motion.position_m, Vector3d(-0.1, 0.1, 0.8), 0);
@@ -329,6 +346,7 @@ int main() {
       cmocka_unit_test(files_that_are_no_scenario_are_refused_with_one_line),
       cmocka_unit_test(each_of_several_arms_has_the_world_in_its_base_frame),
       cmocka_unit_test(the_surroundings_of_the_configuration_are_part_of_the_world),
+      cmocka_unit_test(what_a_scenario_lacks_comes_from_other_processes),
       cmocka_unit_test(the_default_rate_is_100_hz),
       cmocka_unit_test(the_urdf_is_searched_in_the_folders_above_the_scenario),
       cmocka_unit_test(the_scenarios_of_the_paper_have_its_values),

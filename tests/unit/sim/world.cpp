@@ -8,8 +8,9 @@ namespace {
 
 World moving_world() {
   World world;
-  world.target.motion.position_m = {1, 2, 3};
-  world.target.motion.velocity_mps = {0.1, 0, -0.2};
+  world.target.emplace();
+  world.target->motion.position_m = {1, 2, 3};
+  world.target->motion.velocity_mps = {0.1, 0, -0.2};
   Obstacle bar{7, {Shape::kCapsule, {0.05, 0.3, 0}}, {}};
   bar.motion.velocity_mps = {0, 0.5, 0};
   bar.motion.orientation = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY());
@@ -20,13 +21,13 @@ World moving_world() {
 
 void after_zero_seconds_the_world_is_unchanged(void**) {
   const World world = advanced(moving_world(), 0);
-  check_near(world.target.motion.position_m, Eigen::Vector3d(1, 2, 3), 0);
+  check_near(world.target->motion.position_m, Eigen::Vector3d(1, 2, 3), 0);
   check_near(world.obstacles[0].motion.position_m, Eigen::Vector3d(0, 0, 0), 0);
 }
 
 void positions_follow_constant_velocities(void**) {
   const World world = advanced(moving_world(), 2);
-  check_near(world.target.motion.position_m, Eigen::Vector3d(1.2, 2, 2.6), 1e-15);
+  check_near(world.target->motion.position_m, Eigen::Vector3d(1.2, 2, 2.6), 1e-15);
   check_near(world.obstacles[0].motion.position_m, Eigen::Vector3d(0, 1, 0), 1e-15);
   check_near(world.obstacles[0].motion.velocity_mps, Eigen::Vector3d(0, 0.5, 0), 0);
   assert_int_equal(world.obstacles[0].id, 7);
@@ -115,19 +116,21 @@ void after_its_end_a_path_continues_at_constant_velocity(void**) {
 
 void a_target_follows_its_path_with_constant_angular_velocity(void**) {
   World world;
-  world.target.motion = curved_motion();
-  world.target.motion.angular_velocity_radps = {0, 0, M_PI};
-  const Motion motion = advanced(world, 0.5).target.motion;
+  world.target.emplace();
+  world.target->motion = curved_motion();
+  world.target->motion.angular_velocity_radps = {0, 0, M_PI};
+  const Motion motion = advanced(world, 0.5).target->motion;
   check_near(motion.position_m, Eigen::Vector3d(1.1, 2, 3.2), 0);
   check_near(motion.orientation * Eigen::Vector3d::UnitX(), Eigen::Vector3d(0, 1, 0), 1e-15);
 }
 
 void small_steps_along_a_path_end_at_the_same_position(void**) {
   World stepped;
-  stepped.target.motion = curved_motion();
+  stepped.target.emplace();
+  stepped.target->motion = curved_motion();
   for (int i = 0; i < 700; ++i) stepped = advanced(stepped, 0.001);
-  check_near(stepped.target.motion.position_m, curved_after(0.7).position_m, 1e-12);
-  check_near(stepped.target.motion.velocity_mps, curved_after(0.7).velocity_mps, 1e-12);
+  check_near(stepped.target->motion.position_m, curved_after(0.7).position_m, 1e-12);
+  check_near(stepped.target->motion.velocity_mps, curved_after(0.7).velocity_mps, 1e-12);
 }
 
 }  // namespace
