@@ -17,6 +17,7 @@ from sidestep import (attachments_t, control_t, controller_status_t, joint_comma
 TYPES = {"TARGET": target_t, "OBSTACLES": obstacles_t, "ARM_STATE": joint_state_t, "ARM_COMMAND": joint_command_t,
          "CONTROLLER_STATUS": controller_status_t, "OTHER_JOINTS": named_joints_t, "CONTROL": control_t,
          "ATTACHMENTS": attachments_t, "JOINT_TARGET": joint_target_t}
+MOST_AT_ONCE = 1000  # messages; a flood of them must not stop the caller
 MODES = {getattr(controller_status_t, name): name for name in ("WAIT", "HOLD", "TRACK", "BRAKE", "FAULT")}
 
 
@@ -37,9 +38,11 @@ def connect(lcm_url):
 
 
 def handle_messages(network, limit_s=None):
-    """Waits for a message, up to limit_s or without limit, and handles it."""
-    if select.select([network], [], [], limit_s)[0]:  # Ctrl-C interrupts select(), but not handle()
+    """Waits for a message, up to limit_s or without limit, and handles it. Returns whether one came."""
+    came = bool(select.select([network], [], [], limit_s)[0])  # Ctrl-C interrupts select(), but not handle()
+    if came:
         network.handle_timeout(10)  # ms; handle() would block on an incomplete message
+    return came
 
 
 def publish(channel, message_at, lcm_url):
@@ -91,9 +94,12 @@ class LatestMessages(dict):
         return {channel: now_s - received_s for channel, received_s in self.received_s.items()}
 
     def receive(self, duration_s):
+        """Handles the messages that come within duration_s, and first of all those that have come before."""
         end = time.monotonic() + duration_s
-        while (left_s := end - time.monotonic()) > 0:
-            handle_messages(self.network, left_s)
+        for _ in range(MOST_AT_ONCE):
+            left_s = end - time.monotonic()
+            if not handle_messages(self.network, max(left_s, 0.0)) and left_s <= 0:
+                return
 
 
 def add_lcm_url(parser):

@@ -5,12 +5,13 @@ import numpy as np
 
 import arm
 import runs
-import scene
+from visuals import visuals
 from wire import obstacle_t
 
 KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "JOINT_TARGET", "CONTROLLER_STATUS"]  # the messages that are shown
 SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
           "cylinder": (obstacle_t.CYLINDER, ["radius_m", "height_m"]), "box": (obstacle_t.BOX, [])}
+KNOWN = {number for number, _ in SHAPES.values()}
 
 
 def static_obstacle(settings, number):
@@ -23,13 +24,15 @@ def static_obstacle(settings, number):
 
 
 class ArmView:
-    """robot: (URDF, base, tip). name: prefix of all names in the viewer. latest: wire.LatestMessages of channels()."""
+    """robot: (URDF, base, tip). name: of one arm among several. latest: wire.LatestMessages of channels()."""
 
     def __init__(self, config, robot, name=""):
         settings = runs.load(config)
         neighbours = settings.get("neighbours") or {}
         self.name = name
         self.chain, self.shapes = arm.chain(*robot), arm.shapes(*robot)
+        package_path = (settings.get("robot") or {}).get("package_path") or []
+        self.visuals = visuals(*robot, [runs.ROOT / path for path in package_path])
         self.names = {kind: (settings.get("channels") or {}).get(kind.lower(), kind) for kind in KINDS}
         self.neighbours = neighbours.get("listen") or []
         self.position = np.array(neighbours.get("base_position_m", [0, 0, 0]), float)  # of the base, world frame
@@ -44,6 +47,9 @@ class ArmView:
     def point(self, position):
         return self.position + self.rotation @ np.array(position)
 
+    def in_base(self, position):
+        return self.rotation.T @ (np.array(position) - self.position)
+
     def in_world(self, obstacle):
         result = copy.copy(obstacle)
         result.position, result.velocity = self.point(obstacle.position), self.rotation @ np.array(obstacle.velocity)
@@ -53,7 +59,7 @@ class ArmView:
     def obstacles(self, latest):
         message = latest.get(self.names["OBSTACLES"])
         obstacles = message.obstacles if message else []
-        return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in scene.OBSTACLE_KINDS]
+        return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in KNOWN]
 
     def links_of_others(self, latest):
         return [link for name in self.neighbours if name in latest for link in latest[name].obstacles]
@@ -73,6 +79,12 @@ class ArmView:
             return None
         newest = max(kinds, key=lambda kind: latest.received_s[self.names[kind]])
         return None if (goal := arm.goal_m(self.chain, latest[self.names[newest]])) is None else self.point(goal)
+
+    def state(self, latest):
+        """The latest status or None, and kind of message -> s since the latest one of this arm."""
+        ages_s = latest.ages_s()
+        return (latest.get(self.names["CONTROLLER_STATUS"]),
+                {kind: ages_s[name] for kind, name in self.names.items() if name in ages_s})
 
     def guide(self, latest):
         status = latest.get(self.names["CONTROLLER_STATUS"])

@@ -1,108 +1,148 @@
-"""The arm, the obstacles and the paths as messages of Drake's viewer.
-
-The viewer rebuilds the whole scene after a load message; poses are cheap. Hence frequent changes use poses only: a link
-has one copy for every colour, an obstacle's velocity is a row of arrowheads, a path is a string of beads, and the parts
-that are not shown now have the pose HIDDEN.
-"""
+"""Arms, obstacles and paths as nodes of a viser scene. A node is made once; then only what changes is sent."""
 import numpy as np
+import trimesh
 
 import arm
-import geometry
-from wire import obstacle_t  # before drake: wire adds the path of the generated types
-from drake import lcmt_viewer_draw, lcmt_viewer_geometry_data as part_t, lcmt_viewer_link_data, lcmt_viewer_load_robot
+from wire import obstacle_t
 
-ARM_COLOURS = [(0.85, 0.1, 0.1), (0.95, 0.5, 0.1), (0.9, 0.8, 0.1), (0.2, 0.45, 0.85)]  # small to large clearance
-COLOUR_ENDS_M = [0.05, 0.1, 0.2]  # clearance up to which each colour but the last applies
-OBSTACLE, SURROUNDING = (0.7, 0.15, 0.65), (0.6, 0.6, 0.6)
-TARGET, TRAIL, GUIDE = (0.05, 0.65, 0.3), (0.1, 0.1, 0.1), (1.0, 0.45, 0.0)
-ARROW_TIMES_S = [0.15, 0.3, 0.45]
-TRAIL_BEADS = 120
-GUIDE_BEADS = 8  # length of controller_status_t.guide_tool
-HIDDEN = (np.array([0.0, 0.0, -1e4]), np.eye(3))
-KINDS = {"sphere": part_t.SPHERE, "cylinder": part_t.CYLINDER, "capsule": part_t.CAPSULE, "box": part_t.BOX}
-OBSTACLE_KINDS = {obstacle_t.SPHERE: ("sphere", 1), obstacle_t.CAPSULE: ("capsule", 2), obstacle_t.BOX: ("box", 3),
-                  obstacle_t.CYLINDER: ("cylinder", 2)}
+BANDS = [(0.05, (217, 26, 26)), (0.1, (242, 128, 26)), (0.2, (230, 204, 26)), (np.inf, (51, 115, 217))]  # up to, m
+OBSTACLE, SURROUNDING = (178, 38, 166), (150, 150, 150)
+TARGET, TRAIL, GUIDE = (13, 166, 76), (40, 40, 40), (255, 115, 0)
+ARROW_S = 0.5           # an arrow is the motion in this time
+TRANSPARENT = 0.35      # opacity of the collision shapes over visual meshes
+OBSTACLE_KINDS = {obstacle_t.SPHERE: "sphere", obstacle_t.CAPSULE: "capsule", obstacle_t.BOX: "box",
+                  obstacle_t.CYLINDER: "cylinder"}
+NO_LINES = np.zeros((0, 2, 3))
 
 
-def arrowhead(length_m=0.05, radius_m=0.018, sides=12):
-    """A cone along z as mesh data of the viewer: counts, corners, triangles."""
-    angles = np.arange(sides) * 2 * np.pi / sides
-    ring = np.stack([radius_m * np.cos(angles), radius_m * np.sin(angles), np.zeros(sides)], axis=1)
-    corners = np.concatenate([[[0, 0, length_m], [0, 0, 0]], ring])
-    around = [(2 + i, 2 + (i + 1) % sides) for i in range(sides)]
-    triangles = [(0, a, b) for a, b in around] + [(1, b, a) for a, b in around]
-    return [len(corners), len(triangles), *corners.ravel(), *np.ravel(triangles)]
+def mesh_of(kind, size):
+    """The trimesh of a shape; size as in arm.Shape or obstacle_t. Its centre is the origin, its axis is z."""
+    if kind == "sphere":
+        return trimesh.creation.icosphere(subdivisions=3, radius=size[0])
+    if kind == "box":
+        return trimesh.creation.box(extents=size)
+    if kind == "cylinder":
+        return trimesh.creation.cylinder(radius=size[0], height=size[1], sections=32)
+    mesh = trimesh.creation.capsule(radius=size[0], height=size[1], count=[24, 24])
+    mesh.apply_translation(-mesh.bounds.mean(axis=0))
+    return mesh
 
 
-def part(kind, sizes, colour, position=(0, 0, 0), rotation=np.eye(3)):
-    made = part_t()
-    made.type, made.color, made.string_data = kind, [*colour, 1.0], ""
-    made.position, made.quaternion = list(position), list(arm.quaternion_of(rotation))
-    made.num_float_data, made.float_data = len(sizes), list(sizes)
-    return made
+def mesh_of_file(visual):
+    mesh = trimesh.load(visual.file, force="mesh")
+    mesh.apply_scale(visual.scale)
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = visual.rotation, visual.position
+    return mesh.apply_transform(pose)
 
 
-def beads(name, count, radius_m, colour):
-    """Parts for a path of at most `count` points; bead_poses() of the same name gives their poses."""
-    return {f"{name}::{i}": [part(part_t.SPHERE, [radius_m], colour)] for i in range(count)}
+def segments(points):
+    """N-1 x 2 x 3: the lines from point to point."""
+    points = np.asarray(points).reshape(-1, 3)
+    return np.stack([points[:-1], points[1:]], axis=1) if len(points) > 1 else NO_LINES
 
 
-def bead_poses(name, count, points):
-    points = list(points)[-count:]
-    return {f"{name}::{i}": (points[i], np.eye(3)) if i < len(points) else HIDDEN for i in range(count)}
+def set_lines(handle, lines):
+    handle.visible = len(lines) > 0
+    if len(lines):
+        handle.points = np.asarray(lines, np.float32)
 
 
-def arm_parts(shapes):
-    return {f"arm::{i}::{band}": [part(KINDS[shape.kind], shape.size, colour, shape.position, shape.rotation)]
-            for i, shape in enumerate(shapes) for band, colour in enumerate(ARM_COLOURS)}
+def band_of(clearance_m):
+    return next(colour for most_m, colour in BANDS if not clearance_m > most_m)
 
 
-def arm_poses(shapes, link_poses, obstacles):
-    """Poses of all copies of all shapes; only the copy whose colour fits the clearance is visible."""
-    poses = {}
-    for i, shape in enumerate(shapes):
-        pose = link_poses[shape.frame]
-        visible = np.searchsorted(COLOUR_ENDS_M, geometry.clearance_m(shape, pose, obstacles))
-        poses |= {f"arm::{i}::{band}": pose if band == visible else HIDDEN for band in range(len(ARM_COLOURS))}
-    return poses
+class ArmNodes:
+    """One arm: a frame for every link, with its meshes below it; target, trail and guide."""
+
+    def __init__(self, scene, one):
+        self.shapes = one.shapes
+        prefix = f"/{one.name or 'arm'}"
+        self.frames = [scene.add_frame(f"{prefix}/{i}", show_axes=False, visible=False)
+                       for i in range(len(one.chain) + 1)]
+        self.visuals = [(visual.frame, add_mesh(scene, f"{prefix}/{visual.frame}/visual{i}", mesh_of_file(visual)))
+                        for i, visual in enumerate(one.visuals)]
+        self.solids = [self.add_shape(scene, f"{prefix}/{shape.frame}/shape{i}", shape)
+                       for i, shape in enumerate(one.shapes)]
+        self.target = scene.add_icosphere(f"{prefix}/target", 0.03, color=TARGET, visible=False)
+        self.trail, self.guide = (scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width,
+                                                          visible=False)
+                                  for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0)))
+
+    def add_shape(self, scene, name, shape):
+        handle = add_mesh(scene, name, mesh_of(shape.kind, shape.size), visible=not self.visuals,
+                          opacity=TRANSPARENT if self.visuals else None)
+        handle.position, handle.wxyz = shape.position, arm.quaternion_of(shape.rotation)
+        return handle
+
+    def place(self, link_poses):
+        for frame, (position, rotation) in zip(self.frames, link_poses):
+            frame.position, frame.wxyz, frame.visible = position, arm.quaternion_of(rotation), True
+
+    def colour(self, clearances_m):
+        """clearances_m: of each shape; a visual mesh has the colour of the least clearance of its link."""
+        for solid, clearance_m in zip(self.solids, clearances_m):
+            paint(solid, band_of(clearance_m))
+        for frame, visual in self.visuals:
+            own_m = [clearance_m for shape, clearance_m in zip(self.shapes, clearances_m) if shape.frame == frame]
+            paint(visual, band_of(min(own_m, default=np.inf)))
+
+    def show(self, visuals, shapes):
+        """Which of the two layers are visible."""
+        for handles, visible in (([handle for _, handle in self.visuals], visuals), (self.solids, shapes)):
+            for handle in handles:
+                handle.visible = visible
+
+    def mark(self, target, trail, guide):
+        """target: 3 or None; trail and guide: points, m."""
+        self.target.visible = target is not None
+        if target is not None:
+            self.target.position = target
+        set_lines(self.trail, segments(trail))
+        set_lines(self.guide, segments(guide))
 
 
-def obstacle_parts(obstacles):
-    parts = {}
-    for obstacle in obstacles:
-        kind, numbers = OBSTACLE_KINDS[obstacle.shape]
-        colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
-        parts[f"obstacle::{obstacle.id}"] = [part(KINDS[kind], obstacle.size[:numbers], colour)]
-        for i in range(len(ARROW_TIMES_S)):
-            parts[f"arrow::{obstacle.id}::{i}"] = [part(part_t.MESH, arrowhead(), OBSTACLE)]
-    return parts
+def add_mesh(scene, name, mesh, colour=BANDS[-1][1], **options):
+    return scene.add_mesh_simple(name, mesh.vertices, mesh.faces, color=colour, **options)
 
 
-def obstacle_poses(obstacle):
-    """Poses of the obstacle and of the arrowheads: in front of its surface, extrapolated by ARROW_TIMES_S."""
+def paint(handle, colour):
+    if handle.color != colour:
+        handle.color = colour
+
+
+class ObstacleNodes:
+    """The obstacles by their ids, each with an arrow along its velocity."""
+
+    def __init__(self, scene):
+        self.scene, self.nodes = scene, {}
+        self.arrows = scene.add_arrows("/velocities", NO_LINES, OBSTACLE, shaft_radius=0.008, head_radius=0.02,
+                                       head_length=0.05, visible=False)
+        self.shows_arrows = True
+
+    def draw(self, obstacles):
+        for gone in self.nodes.keys() - {obstacle.id for obstacle in obstacles}:
+            self.nodes.pop(gone)[1].remove()
+        for obstacle in obstacles:
+            handle = self.handle_of(obstacle)
+            handle.position = obstacle.position
+            if obstacle.shape != obstacle_t.SPHERE:
+                handle.wxyz = obstacle.quaternion
+        moving = [obstacle for obstacle in obstacles if np.linalg.norm(obstacle.velocity) > 0.01]
+        set_lines(self.arrows, [arrow_of(obstacle) for obstacle in moving] if self.shows_arrows else NO_LINES)
+
+    def handle_of(self, obstacle):
+        """The node of the obstacle; a new one when its shape has changed."""
+        form = (obstacle.shape, *obstacle.size)
+        if self.nodes.get(obstacle.id, (None,))[0] != form:
+            mesh = mesh_of(OBSTACLE_KINDS[obstacle.shape], obstacle.size)
+            colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
+            self.nodes[obstacle.id] = form, add_mesh(self.scene, f"/obstacles/{obstacle.id}", mesh, colour)
+        return self.nodes[obstacle.id][1]
+
+
+def arrow_of(obstacle):
+    """2 x 3: from the obstacle's centre, past its surface if it is a sphere, to where it is ARROW_S later."""
     position, velocity = np.array(obstacle.position), np.array(obstacle.velocity)
-    poses = {f"obstacle::{obstacle.id}": (position, arm.rotation_of_quaternion(obstacle.quaternion))}
-    speed = np.linalg.norm(velocity)
-    for i, ahead_s in enumerate(ARROW_TIMES_S):
-        tip = position + velocity * ahead_s + velocity / max(speed, 1e-9) * obstacle.size[0]
-        poses[f"arrow::{obstacle.id}::{i}"] = (tip, arm.rotation_from_z(velocity)) if speed > 0.01 else HIDDEN
-    return poses
-
-
-def load_message(parts):
-    message = lcmt_viewer_load_robot()
-    for name, geometry_data in parts.items():
-        link = lcmt_viewer_link_data()
-        link.name, link.num_geom, link.geom = name, len(geometry_data), geometry_data
-        message.link.append(link)
-    message.num_links = len(message.link)
-    return message
-
-
-def draw_message(poses, time_s):
-    message = lcmt_viewer_draw()
-    message.timestamp, message.num_links = int(time_s * 1000), len(poses)
-    message.link_name, message.robot_num = list(poses), [0] * len(poses)
-    message.position = [list(position) for position, _ in poses.values()]
-    message.quaternion = [list(arm.quaternion_of(rotation)) for _, rotation in poses.values()]
-    return message
+    outside = velocity / np.linalg.norm(velocity) * obstacle.size[0]
+    return np.stack([position, position + outside + velocity * ARROW_S])

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """Run a scenario repeatedly and show it live in the browser, until Ctrl-C.
 
-Starts Meldis, which serves the page, view.py, which publishes the drawing, and the controller and the simulator.
+Starts view.py, which serves the page, the controller and the simulator.
 """
 import argparse
-import os
 import socket
 import subprocess
 import sys
@@ -43,22 +42,23 @@ def refuse_taken(port):
 
 
 @contextmanager
-def viewers(scenario, port, lcm_url=""):
-    """Meldis and view.py while the block runs. Meldis reads its LCM network from the environment."""
-    network = ["--lcm-url", lcm_url] if lcm_url else []
-    view = [ROOT / "host/view/view.py", "--config", *map(runs.config_of, runs.arms_of(scenario))]
-    environment = os.environ | ({"LCM_DEFAULT_URL": lcm_url} if lcm_url else {})
-    meldis, started = ["-m", "pydrake.visualization.meldis", "--port", port, "--idle-timeout", 0], []
+def viewer(scenario, port, lcm_url=""):
+    """view.py while the block runs, at a lower priority than everything else."""
+    arms = runs.arms_of(scenario)
+    command = ["nice", "-n", 10, sys.executable, ROOT / "host/view/view.py", "--port", port,
+               "--config", *map(runs.config_of, arms), *["--steer"] * lacks_target(scenario)]
     runs.RECORDS.mkdir(parents=True, exist_ok=True)
+    with open(runs.RECORDS / "view.log", "w") as log:
+        process = subprocess.Popen([*map(str, command), *(["--lcm-url", lcm_url] if lcm_url else [])],
+                                   process_group=0, stdout=log, stderr=log)
     try:
-        with open(runs.RECORDS / "view.log", "w") as log:
-            for command in (meldis, view + network):
-                started.append(subprocess.Popen([sys.executable, *map(str, command)], env=environment, process_group=0,
-                                                stdout=log, stderr=log))
-        yield started
+        yield process
     finally:
-        for process in reversed(started):
-            runs.stop(process)
+        runs.stop(process)
+
+
+def lacks_target(scenario):
+    return any("target" not in one for one in runs.arms_of(scenario))
 
 
 def main():
@@ -70,13 +70,13 @@ def main():
     scenario = runs.load_scenario(scenario_file)
     refuse_taken(arguments.port)
     print(f"{scenario['title']}: open http://localhost:{arguments.port} (Ctrl-C ends)", flush=True)
-    if any("target" not in one for one in runs.arms_of(scenario)):
+    if lacks_target(scenario):
         print(COMMANDS.format(root=ROOT), flush=True)
-    with viewers(scenario, arguments.port) as started:
-        while all(process.poll() is None for process in started):
+    with viewer(scenario, arguments.port) as view:
+        while view.poll() is None:
             runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)
             time.sleep(PAUSE_S)
-    raise runs.RunFailed("a viewer has ended")
+    raise runs.RunFailed(f"the view has ended: {runs.last_line(runs.RECORDS / 'view.log')}")
 
 
 if __name__ == "__main__":

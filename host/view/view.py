@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Publish the state of one or more controllers as messages of Drake's viewer, for Meldis or another viewer.
+"""Show one or more controllers live on a page of this machine, until Ctrl-C.
 
-Drawn are: each arm, coloured by its clearance (red: small, blue: large); the obstacles, with arrowheads at their
-extrapolated positions in 0.15, 0.3 and 0.45 s; the surroundings of the configuration (grey); the target; the tool's
-past path (black beads); and, while foresight guides the arm, the tool's coming path (orange beads).
+The page shows each arm, by its visual meshes where there are any and by the shapes that the controller uses, coloured
+by clearance; the obstacles with their velocities; the surroundings of the configuration; the target; the tool's past
+path and, while foresight guides the arm, its coming path; and the state of the controller in words.
 """
 import argparse
 import signal
@@ -17,77 +17,82 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "host/tools"))
 import arm
-import scene
+import geometry
 import wire
 from arm_view import ArmView
 
-PERIOD_S = 0.04
-REPEAT_LOAD_S = 1.0  # for viewers that start later
+PERIOD_S = 1 / 30
+SLOW = 6              # colours and words change every SLOW frames
+TRAIL_POINTS = 120
 TRAIL_STEP_M = 0.01
-JUMP_M = 0.3         # a tool motion within one period that only a new run can cause
+JUMP_M = 0.3          # a tool motion within one period that only a new run can cause
+CAMERA_M, LOOK_AT_M, FIELD_RAD = (1.1, -1.6, 1.1), (0.1, 0.0, 0.5), 0.75  # from the middle of the arms' bases
 
 
 class View:
-    """Several arms in one world. Each arm's own drawings carry its name; all arms have the same obstacles."""
+    """Several arms in one world; all have the same obstacles."""
 
-    def __init__(self, arms, lcm_url):
+    def __init__(self, arms, lcm_url, port, steers):
+        import viser  # takes a second, and tests of the arguments do without it
+
+        import panel
+        import scene
         self.arms = arms
         channels = {name: kind for one in arms for name, kind in one.channels().items()}
         self.latest = wire.LatestMessages(channels, lcm_url)
-        self.trails = [deque(maxlen=scene.TRAIL_BEADS) for _ in arms]
+        self.trails = [deque(maxlen=TRAIL_POINTS) for _ in arms]
         self.surroundings = [obstacle for one in arms for obstacle in one.surroundings]
         for i, obstacle in enumerate(self.surroundings):
             obstacle.id = -2 - i  # unique among several arms
-        self.loaded, self.load_due_s = None, 0.0
-
-    def obstacles(self):
-        return self.arms[0].obstacles(self.latest) + self.surroundings
-
-    def load(self):
-        obstacles = self.obstacles()
-        key = [(obstacle.id, obstacle.shape, *obstacle.size) for obstacle in obstacles]
-        if key == self.loaded and time.monotonic() < self.load_due_s:
-            return
-        self.loaded, self.load_due_s = key, time.monotonic() + REPEAT_LOAD_S
-        parts = scene.obstacle_parts(obstacles)
-        for one in self.arms:
-            parts |= named(one, {
-                "target": [scene.part(scene.KINDS["sphere"], [0.03], scene.TARGET)], **scene.arm_parts(one.shapes),
-                **scene.beads("trail", scene.TRAIL_BEADS, 0.006, scene.TRAIL),
-                **scene.beads("guide", scene.GUIDE_BEADS, 0.012, scene.GUIDE)})
-        self.latest.network.publish("DRAKE_VIEWER_LOAD_ROBOT", scene.load_message(parts).encode())
-
-    def poses(self, one, trail, obstacles):
-        """Poses of one arm's own drawings; empty before its first arm state."""
-        link_poses, target = one.link_poses(self.latest), one.target(self.latest)
-        if link_poses is None:
-            return {}
-        extend(trail, link_poses[-1][0])
-        return named(one, {
-            "target": scene.HIDDEN if target is None else (target, np.eye(3)),
-            **scene.arm_poses(one.shapes, link_poses, obstacles + one.links_of_others(self.latest)),
-            **scene.bead_poses("trail", scene.TRAIL_BEADS, trail),
-            **scene.bead_poses("guide", scene.GUIDE_BEADS, one.guide(self.latest))})
+        # Whoever reaches the page can steer where that is offered: this machine only.
+        self.server = viser.ViserServer(host="localhost", port=port, label="Sidestep", verbose=False)
+        middle = np.mean([one.position for one in arms], axis=0)
+        self.server.initial_camera.position = middle + CAMERA_M
+        self.server.initial_camera.look_at = middle + LOOK_AT_M
+        self.server.initial_camera.fov = FIELD_RAD
+        self.server.scene.configure_default_lights(cast_shadow=False)  # shadows cost most without a GPU
+        self.server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.25, section_size=1.0)
+        self.arm_nodes = [scene.ArmNodes(self.server.scene, one) for one in arms]
+        self.obstacle_nodes = scene.ObstacleNodes(self.server.scene)
+        self.panel = panel.Panel(self.server, arms, any(one.visuals for one in arms))
+        self.steering = panel.Steering(self.server) if steers else None
+        self.server.gui.add_html(panel.key())
+        self.frame = 0
 
     def draw(self):
-        obstacles, poses = self.obstacles(), {}
-        for one, trail in zip(self.arms, self.trails):
-            poses |= self.poses(one, trail, obstacles)
-        if not poses:
-            return
-        for obstacle in obstacles:
-            poses |= scene.obstacle_poses(obstacle)
-        self.latest.network.publish("DRAKE_VIEWER_DRAW", scene.draw_message(poses, time.time()).encode())
+        obstacles = self.arms[0].obstacles(self.latest) + self.surroundings
+        slow = self.frame % SLOW == 0
+        self.frame += 1
+        tools = [self.draw_arm(*parts, obstacles if slow else None)
+                 for parts in zip(self.arms, self.arm_nodes, self.trails)]
+        self.obstacle_nodes.shows_arrows = self.panel.arrows.value
+        self.obstacle_nodes.draw(obstacles)
+        if slow:
+            self.panel.show([one.state(self.latest) for one in self.arms])
+        if self.steering and (target := self.steering.message(tools[0], self.arms[0].in_base)):
+            self.latest.network.publish(self.arms[0].names["TARGET"], target.encode())
+
+    def draw_arm(self, one, nodes, trail, obstacles):
+        """Draws one arm and returns its tool position; None before its first arm state. obstacles: to colour it."""
+        link_poses = one.link_poses(self.latest)
+        if link_poses is None:
+            return None
+        extend(trail, link_poses[-1][0])
+        nodes.place(link_poses)
+        nodes.mark(one.target(self.latest), trail if self.panel.trail.value else [], one.guide(self.latest))
+        nodes.show(self.panel.visuals.value, self.panel.shapes.value)
+        if obstacles is not None:
+            near = obstacles + one.links_of_others(self.latest)
+            nodes.colour([geometry.clearance_m(shape, link_poses[shape.frame], near) for shape in one.shapes])
+        return link_poses[-1][0]
 
     def run(self):
+        due_s = time.monotonic()
         while True:
-            self.latest.receive(PERIOD_S)
-            self.load()
-            self.draw()
-
-
-def named(one, drawings):
-    return {f"{one.name}{name}": drawing for name, drawing in drawings.items()}
+            due_s = max(due_s + PERIOD_S, time.monotonic())
+            self.latest.receive(due_s - time.monotonic())
+            with self.server.atomic():
+                self.draw()
 
 
 def extend(trail, tool):
@@ -99,7 +104,7 @@ def extend(trail, tool):
 
 def arms_of(arguments):
     """An ArmView for each configuration, named after its file if there are several."""
-    return [ArmView(config, arm.robot_of(config, arguments), f"{config.stem}::" if len(arguments.config) > 1 else "")
+    return [ArmView(config, arm.robot_of(config, arguments), config.stem if len(arguments.config) > 1 else "")
             for config in arguments.config]
 
 
@@ -107,12 +112,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--config", type=Path, nargs="+", default=[arm.CONFIG],
                         help="configuration of the controller, one for each arm (default: that of the LWA3)")
+    parser.add_argument("--port", type=int, default=7000, help="port of the page (default %(default)s)")
+    parser.add_argument("--steer", action="store_true", help="offer a target to drag, which is then sent on TARGET")
     arm.add_robot(parser)
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        View(arms_of(arguments), arguments.lcm_url).run()
+        View(arms_of(arguments), arguments.lcm_url, arguments.port, arguments.steer).run()
     except KeyboardInterrupt:
         pass
 

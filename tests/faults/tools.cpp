@@ -31,6 +31,9 @@ void a_posture_is_drawn_where_it_puts_the_tool(void**) {
 void the_surroundings_of_a_configuration_are_drawn(void**) {
   passes("surroundings");
 }
+void visual_meshes_are_found_beside_the_urdf_and_in_packages(void**) {
+  passes("visual_meshes");
+}
 void a_rotation_is_restored_from_its_quaternion(void**) {
   passes("quaternions");
 }
@@ -58,6 +61,9 @@ void a_taken_port_is_refused_before_anything_starts(void**) {
 void the_commands_that_make_play_names_run(void**) {
   passes("play_commands");
 }
+void messages_that_came_earlier_are_received_without_time_left(void**) {
+  passes("late_receiver");
+}
 void a_silent_controller_is_shown_as_stale_and_no_value_as_a_word(void**) {
   passes("watched_texts");
 }
@@ -76,6 +82,8 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_surroundings_of_a_configuration_are_drawn, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_posture_is_drawn_where_it_puts_the_tool, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(visual_meshes_are_found_beside_the_urdf_and_in_packages,
+                                sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
@@ -86,6 +94,8 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(messages_that_came_earlier_are_received_without_time_left,
+                                sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_not_decoded, sidestep::test::kill_processes),

@@ -32,6 +32,7 @@ import send_obstacles
 import send_target
 import show
 import view
+import visuals
 import watch
 import wire
 from arm_view import ArmView
@@ -136,6 +137,26 @@ def surroundings():
     assert (table.id, table.shape, wall.id) == (-2, 2, -3) and list(wall.size) == [0.05, 2.5, 2.0]
     assert np.allclose(table.position, [-0.8, 0, 0.35])
     assert math.isclose(geometry.distance_m(table, np.array([[-0.8, 0, 0.47]]))[0], 0.1)
+
+
+def visual_meshes():
+    """Visual meshes are found beside the URDF and below the package path; a missing file is left out."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "packages/arms").mkdir(parents=True)
+        for file in ("base.stl", "packages/arms/hand.dae"):
+            (folder / file).touch()
+        visual = '<visual><origin xyz="0 0 {}"/><geometry><mesh filename="{}" scale="2 2 2"/></geometry></visual>'
+        (folder / "arm.urdf").write_text(
+            f'<robot name="none"><link name="base">{visual.format(1, "base.stl")}{visual.format(1, "no.stl")}</link>'
+            f'<link name="hand">{visual.format(3, "package://arms/hand.dae")}</link>'
+            '<joint name="j" type="revolute"><parent link="base"/><child link="hand"/></joint></robot>')
+        found = visuals.visuals(folder / "arm.urdf", "base", "hand", [folder / "packages"])
+        assert [(one.frame, one.file) for one in found] == [(0, folder / "base.stl"),
+                                                            (1, folder / "packages/arms/hand.dae")], found
+        assert list(found[1].position) == [0, 0, 3] and list(found[0].scale) == [2, 2, 2]
+        assert len(visuals.visuals(folder / "arm.urdf", "base", "hand")) == 1
+    assert visuals.visuals(*LWA3) == []
 
 
 def logged_run(folder):
@@ -303,6 +324,22 @@ def play_commands():
         assert first.startswith(("sending ", "usage: watch.py")), (words, first)
 
 
+def late_receiver():
+    """Messages that came while nobody received are received even without time left; a flood ends at some time."""
+    network = runs.private_url()
+    latest = wire.LatestMessages(["TARGET"], network)
+    target = wire.target_t()
+    for number in range(3):
+        target.utime = number
+        latest.network.publish("TARGET", target.encode())
+    time.sleep(0.3)
+    latest.receive(0.0)
+    assert latest["TARGET"].utime == 2
+    with mock.patch.object(wire, "handle_messages", return_value=True) as handled:
+        latest.receive(0.0)
+    assert handled.call_count == wire.MOST_AT_ONCE
+
+
 def watched_texts():
     """watch.py tells a silent controller from a living one, and has words for what is no number."""
     status = wire.controller_status_t()
@@ -350,9 +387,9 @@ def hostile_bytes():
 
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
-                                              surroundings, log_becomes_page, log_replays, coordinates,
+                                              surroundings, visual_meshes, log_becomes_page, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              watched_texts, hostile_bytes, goals)}
+                                              late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -1,0 +1,70 @@
+"""The panel of the page: the controllers' state in words, the key of the colours, the layers, and steering by mouse."""
+import html
+import time
+
+import watch
+import wire
+from scene import ARROW_S, BANDS, GUIDE, OBSTACLE, SURROUNDING, TARGET, TRAIL
+
+STYLE = "<div style='font-size:0.85em;padding:0 1em'>"
+DIRECT = "direct: the law alone arrives"
+
+
+def key():
+    """The meaning of the colours as HTML."""
+    bounds = ["0", *(f"{most_m:g}" for most_m, _ in BANDS[:-1])]
+    rows = [(colour, f"link, clearance {low} to {most_m:g} m") for low, (most_m, colour) in zip(bounds, BANDS[:-1])]
+    rows += [(BANDS[-1][1], f"link, clearance above {bounds[-1]} m"),
+             (OBSTACLE, f"obstacle; arrow: {ARROW_S:g} s ahead"), (SURROUNDING, "surroundings"), (TARGET, "target"),
+             (TRAIL, "path of the tool"), (GUIDE, "path that foresight has planned")]
+    return STYLE + "".join(
+        f"<div><span style='color:rgb{colour}'>&#9632;</span> {words}</div>" for colour, words in rows) + "</div>"
+
+
+def words_of(status, ages_s):
+    """The state of one controller as HTML. ages_s: kind of message -> s since the latest one."""
+    stale = watch.stale_text(ages_s)
+    rows = [("", stale)] if status is None or stale else [
+        ("", wire.MODES.get(status.mode, status.mode), watch.message_text(status), watch.speed_text(status)),
+        ("clearance: ", watch.clearance_text(status, ages_s), watch.nearest_text(status)),
+        ("to the target: ", watch.target_text(status)), ("foresight: ", watch.foresight_text(status) or DIRECT)]
+    return STYLE + "".join(f"<div>{name}<b>{html.escape(str(what))}</b> {html.escape(' '.join(rest))}</div>"
+                           for name, what, *rest in rows) + "</div>"
+
+
+class Panel:
+    def __init__(self, server, arms, has_visuals):
+        gui = server.gui
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+        gui.set_panel_label("Sidestep")
+        self.texts = [gui.add_html("") for _ in arms]
+        self.visuals = gui.add_checkbox("robot", has_visuals, disabled=not has_visuals)
+        self.shapes = gui.add_checkbox("controller's shapes", not has_visuals)
+        self.arrows = gui.add_checkbox("velocities", True)
+        self.trail = gui.add_checkbox("path of the tool", True)
+
+    def show(self, states):
+        """states: (status or None, ages_s) of each arm."""
+        for text, state in zip(self.texts, states):
+            words = words_of(*state)
+            if text.content != words:
+                text.content = words
+
+
+class Steering:
+    """A target that a person drags; it is sent while the box is ticked."""
+
+    def __init__(self, server):
+        self.box = server.gui.add_checkbox("send a target: drag it", False)
+        self.handle = server.scene.add_transform_controls("/steering", 0.25, disable_rotations=True, visible=False)
+
+    def message(self, tool, to_base):
+        """The target_t to send, or None. tool: 3, m, where the target starts; to_base: world to base frame."""
+        if not self.box.value or tool is None:
+            self.handle.visible = False
+            return None
+        if not self.handle.visible:
+            self.handle.position, self.handle.visible = tool, True
+        target = wire.target_t()
+        target.utime, target.position = int(time.time() * 1e6), list(to_base(self.handle.position))
+        return target
