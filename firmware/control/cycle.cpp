@@ -39,7 +39,7 @@ NominalCommand scaled(NominalCommand nominal, double scale) {
 /// have a task, not only the tool with its tool_weight, and comfort near the goal would only keep the arm away from it.
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
   const bool is_posture = mode == Mode::kTrack && input.target.is_posture();
-  const double least = is_posture ? 0.0 : shield.comfort_least_weight;
+  const double least = is_posture ? 1e-3 : shield.comfort_least_weight;
   const double largest = is_posture ? shield.comfort_weight / std::max(1.0, shield.tool_weight) : shield.comfort_weight;
   if (mode != Mode::kTrack || guided) return least;
   const double distance_m = (input.target.position_m - input.poses.tool_position).norm();
@@ -55,9 +55,17 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
   const Mode mode = state.supervision.mode;
   const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
   if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
-  const ShieldInput shield_input{model.arm,           input.poses,     input.position_rad, state.stream.velocity_radps,
-                                 input.clearance,     input.obstacles, model.self_pairs,   state.evasion_radps,
-                                 settings.period_s(), comfort};
+  const ShieldInput shield_input{model.arm,
+                                 input.poses,
+                                 input.position_rad,
+                                 state.stream.velocity_radps,
+                                 input.clearance,
+                                 input.obstacles,
+                                 model.self_pairs,
+                                 state.evasion_radps,
+                                 settings.period_s(),
+                                 comfort,
+                                 mode == Mode::kTrack ? settings.shield.person_weight : 0.0};
   const VelocityRange sustainable =
       sustainable_range(model.arm.limits, input.position_rad, input.position_rad, settings.period_s());
   const ShieldResult safe =
@@ -133,7 +141,8 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   probe.passed(Stage::kMonitor);
 
   const ObstacleView obstacles = view_obstacles(model, inputs.obstacles, now_s);
-  const Reach reach{model.settings.shield.range_m, model.settings.shield.pass_horizon_s};
+  const ShieldSettings& shield = model.settings.shield;
+  const Reach reach{shield.range_m, shield.pass_horizon_s, shield.person_clearance_m};
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 

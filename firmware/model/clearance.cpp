@@ -58,12 +58,13 @@ class Gatherer {
         links_(arm, poses, clearance.links),
         view_(view),
         horizon_s_(reach.horizon_s),
-        limit_m_(reach.range_m),
+        reach_(reach),
         clearance_(clearance) {}
 
   void gather(const Obstacle& obstacle, int index, double growth_m) {
     const AllowedContact allowed = allowed_contact(poses_, obstacle.id);
     if (allowed == AllowedContact::kAll) return;
+    limit_m_ = std::min(listed_m_, range_of(obstacle));
     last_body_ = allowed == AllowedContact::kTool ? arm_.joints - 1 : arm_.joints;
     if (obstacle.capsule.is_sphere())
       gather_sphere(obstacle, index, growth_m);
@@ -72,6 +73,10 @@ class Gatherer {
   }
 
  private:
+  double range_of(const Obstacle& obstacle) const {
+    return obstacle.kind == Kind::kPerson ? std::max(reach_.range_m, reach_.person_range_m) : reach_.range_m;
+  }
+
   /// The distance from a point to a link is a convex function of the point: along a straight path it never decreases
   /// faster than the tangent at the start, horizon_s * closing speed in all.
   void gather_sphere(const Obstacle& obstacle, int index, double growth_m) {
@@ -198,7 +203,8 @@ class Gatherer {
     if (!near.is_full()) return;
     const auto less = [](const NearPair& a, const NearPair& b) { return a.least_distance_m() < b.least_distance_m(); };
     farthest_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
-    limit_m_ = near[farthest_].least_distance_m();
+    listed_m_ = near[farthest_].least_distance_m();
+    limit_m_ = std::min(limit_m_, listed_m_);
   }
 
   const Arm& arm_;
@@ -206,7 +212,9 @@ class Gatherer {
   const Links links_;
   const ObstacleView& view_;
   const double horizon_s_;
-  double limit_m_;  ///< pairs whose least distance is not below this are not kept
+  const Reach reach_;
+  double listed_m_ = std::numeric_limits<double>::infinity();  ///< the greatest distance in a full list
+  double limit_m_ = 0.0;  ///< pairs of this obstacle whose least distance is not below this are not kept
   Clearance& clearance_;
   int last_body_ = 0;  ///< links of bodies above may touch the obstacle
   int farthest_ = 0;   ///< index of the pair with the greatest distance in a full list

@@ -60,10 +60,11 @@ struct ObstacleView {
 };
 
 /// Which pairs are collected: those with a surface distance below range_m now, or at the closest approach within
-/// horizon_s at constant velocity.
+/// horizon_s at constant velocity. For persons person_range_m counts where it is larger.
 struct Reach {
   double range_m;
   double horizon_s;
+  double person_range_m = 0.0;
 };
 
 /// Distances of all link shapes to all obstacles, extrapolated to now and grown. Takes time proportional to shapes x

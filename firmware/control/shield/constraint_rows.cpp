@@ -19,6 +19,9 @@ constexpr double kTwoSides_m = 0.08;
 /// A body that turns less while the arm brakes meets obstacles where it is nearest now.
 constexpr double kLeastTurn_rad = 0.01;
 
+/// A link that can leave a person only more slowly has no row for it.
+constexpr double kLeastSpeed_mps = 0.02;
+
 /// A row that is violated by less is met.
 constexpr double kViolated_mps = 1e-4;
 
@@ -120,6 +123,8 @@ class RowMaker {
 
   void add_distance(const NearPair& pair) {
     const double distance_m = pair.now.distance_m;
+    const bool separates = input_.person_weight > 0.0 && is_person(pair);
+    if (separates) add_separation(pair);
     if (distance_m > settings_.range_m) return;
     const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
     const double least = least_mps(row, sustainable_);
@@ -131,9 +136,22 @@ class RowMaker {
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     add_hard(row, least, distance_m - required_m(pair), threat_mps);
-    if (input_.comfort_weight == 0.0) return;
+    if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
+  }
+
+  /// In place of comfort for a person (constraint_rows.h).
+  void add_separation(const NearPair& pair) {
+    const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
+    const double most_mps = -least_mps(-row, sustainable_);
+    if (most_mps < kLeastSpeed_mps) return;
+    const double demand_mps = pair.now.normal.dot(pair.velocity_mps) +
+                              barrier(settings_.person_gain_per_s, pair.now.distance_m, settings_.person_clearance_m);
+    const double scale = std::sqrt(input_.person_weight / input_.comfort_weight) / most_mps;
+    const double bound_mps = std::min(demand_mps, most_mps);
+    if (bound_mps > least_mps(row, sustainable_))
+      add(sustainable_, scale * row, scale * bound_mps, Tier::kComfort, 0.0, rows_.plan);
   }
 
   void add_turning(const NearPair& pair) {
@@ -207,6 +225,7 @@ class RowMaker {
     }
     return speeds_mps;
   }
+  bool is_person(const NearPair& pair) const { return input_.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; }
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.

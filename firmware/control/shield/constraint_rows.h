@@ -29,8 +29,13 @@ namespace sidestep {
 ///     b = -pass_gain (m - pass_clearance)                          otherwise
 /// comfort:
 ///     b = v - comfort_gain (d - comfort_clearance)
+/// separation, in place of comfort for a person in TRACK; with the largest speed a_max = max a q' over the range:
+///     b = min(v - person_gain (d - person_clearance), a_max)
+///   The row and b are divided by a_max, so that the shared slack is a share of what each link can do: a link that can
+///   hardly leave takes no slack from the others. Both are multiplied by sqrt(person_weight / comfort_weight), so that
+///   person_weight takes the place of the weight of the tier.
 ///
-/// Every b is capped at 3 m/s: penetration or a short time would demand more than any arm can do.
+/// Every other b is capped at 3 m/s: penetration or a short time would demand more than any arm can do.
 enum class Tier { kHard, kPass, kComfort };
 constexpr int kTiers = 3;
 

@@ -20,7 +20,8 @@ struct ShieldInput {
   const std::vector<SelfPair>& self_pairs;
   const JointVector& evasion_radps;  ///< the evasion chosen in the previous cycle; size 0: none
   double period_s;
-  double comfort_weight;  ///< weight of the comfort tier in this cycle, s2/m2
+  double comfort_weight;       ///< weight of the comfort tier in this cycle, s2/m2
+  double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
 };
 
 /// The result of the first programme: the joint velocity that the arm is to reach, before acceleration limits, and

@@ -57,6 +57,9 @@ struct ShieldSettings {
   double comfort_near_m = 0.15;  ///< comfort_least_weight applies at this distance and below; linear in between
   double comfort_least_weight = 0.2;  ///< s2/m2
   double comfort_weight = 1000.0;     ///< s2/m2
+  double person_clearance_m = 0.6;    ///< separation: preferred distance from a person in TRACK, also at the target
+  double person_gain_per_s = 2.0;     ///< approach speed per metre above person_clearance_m
+  double person_weight = 1000.0;      ///< of the unmet demand, as a share of the speed that the link can reach
   double tool_weight =
       60.0;  ///< w of the programme: cost of tool velocity error relative to joint velocity error, 1/m2
   double self_clearance_m = 0.02;  ///< between two links, at most (load/self_pairs.h)

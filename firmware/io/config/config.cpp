@@ -92,6 +92,9 @@ void read_shield(YamlSection section, ShieldSettings& shield) {
   section.number("comfort_gain_per_s", shield.comfort_gain_per_s, {0.1, 100.0});
   section.number("comfort_weight", shield.comfort_weight, {0.001, 1e6});
   section.number("comfort_least_weight", shield.comfort_least_weight, {0.001, 1e6});
+  section.number("person_clearance_m", shield.person_clearance_m, {0.0, 2.0});
+  section.number("person_gain_per_s", shield.person_gain_per_s, {0.1, 100.0});
+  section.number("person_weight", shield.person_weight, {0.0, 1e6});
   section.number("comfort_near_m", shield.comfort_near_m, {0.0, 5.0});
   section.number("comfort_far_m", shield.comfort_far_m, {0.01, 10.0});
   if (shield.comfort_far_m <= shield.comfort_near_m) section.fail("comfort_far_m", "must be above comfort_near_m");

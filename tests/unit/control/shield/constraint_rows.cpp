@@ -37,6 +37,7 @@ struct Scene {
   std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
   Clearance clearance;
   std::vector<SelfPair> self_pairs;
+  double person_weight = 0.0;
 
   explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {
     for (const LinkShape& shape : lwa3().shapes) clearance.links.add(transformed(poses, shape));
@@ -45,7 +46,8 @@ struct Scene {
   void add(const Obstacle& obstacle) { set->obstacles[static_cast<size_t>(set->count++)] = obstacle; }
   RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
-    const ShieldInput now{lwa3(), poses, q_rad, last_radps, clearance, view, self_pairs, last_radps, 0.01, 1.0};
+    const ShieldInput now{lwa3(),     poses,      q_rad, last_radps, clearance,    view,
+                          self_pairs, last_radps, 0.01,  1.0,        person_weight};
     return make_rows(kSettings, now, sustainable, range, nominal_radps);
   }
   ConstraintRows rows(const VelocityRange& range, bool hard_only = false) const {
@@ -174,6 +176,45 @@ void the_bounds_of_distance_rows_are_barriers(void**) {
     check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.rest_clearance_m), 1e-9);
     check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
   }
+}
+
+/// In place of comfort: the barrier of persons, as a share of the speed that the link can reach, weighed.
+void a_person_has_a_row_of_separation(void**) {
+  constexpr double kWeight = 250.0;
+  const VelocityRange range = range_of(1.5);
+  Random random(12);
+  int capped = 0, met = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    obstacle.kind = Kind::kPerson;
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
+    const JointVector row = jacobian.transpose() * pair.now.normal;
+    const double most_mps = 1.5 * row.cwiseAbs().sum();
+    if (most_mps < 0.05) continue;
+    const double demand_mps = pair.now.normal.dot(pair.velocity_mps) -
+                              kSettings.person_gain_per_s * (pair.now.distance_m - kSettings.person_clearance_m);
+    scene.person_weight = kWeight;
+    scene.clearance.near.clear();
+    scene.clearance.near.add(pair);
+    const ConstraintRows rows = scene.rows(range);
+    const auto separation =
+        std::find_if(rows.begin(), rows.end(), [](const ConstraintRow& r) { return r.tier == Tier::kComfort; });
+    if (demand_mps <= -most_mps) {
+      assert_true(separation == rows.end());
+      ++met;
+      continue;
+    }
+    assert_true(separation != rows.end());
+    const double scale = std::sqrt(kWeight) / most_mps;
+    check_near(separation->row, JointVector(scale * row), 1e-6 * scale);
+    check_near(separation->bound, scale * std::min(demand_mps, most_mps), 1e-6 * scale);
+    capped += demand_mps > most_mps;
+  }
+  check(capped > 20, "%d capped, %d met", capped, met);
 }
 
 /// The bound grows with the velocity of the obstacle toward the link.
@@ -444,6 +485,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(distance_rows_are_the_gradients_of_the_distances),
       cmocka_unit_test(the_bounds_of_distance_rows_are_barriers),
+      cmocka_unit_test(a_person_has_a_row_of_separation),
       cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),

@@ -1,0 +1,88 @@
+// The separation from persons, in closed loop.
+
+#include <algorithm>
+
+#include "tests/support/check.h"
+#include "tests/support/closed_loop.h"
+
+using namespace sidestep;
+using test::ClosedLoop;
+
+namespace {
+
+constexpr double kAway_m = 0.35;  // of the obstacle from the tool at the start
+
+/// The tool is at its target. A sphere rests beside it.
+ClosedLoop beside(Kind kind, bool tracks = true) {
+  ClosedLoop loop = test::at_home("sidestep");
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  loop.target.position_m = poses.tool_position;
+  loop.sends_target = tracks;
+  const Vector3 outward(poses.tool_position.x(), poses.tool_position.y(), 0.0);
+  loop.add_sphere(poses.tool_position + kAway_m * outward.normalized(), Vector3::Zero()).kind = kind;
+  return loop;
+}
+
+void the_arm_makes_room_for_a_person_and_not_for_a_thing(void**) {
+  ClosedLoop thing = beside(Kind::kThing), person = beside(Kind::kPerson);
+  thing.run(6.0);
+  person.run(6.0);
+  const double thing_m = thing.last.report.clearance_m, person_m = person.last.report.clearance_m;
+  check(person_m > thing_m + 0.05, "%g m from a thing, %g m from a person", thing_m, person_m);
+  check(thing.last.report.target_distance_m < 1e-3, "%g m", thing.last.report.target_distance_m);
+  assert_string_equal(person.commands.violation().c_str(), "");
+}
+
+/// The joints change places in the null space of the task for a while, slowly.
+void an_arm_beside_a_person_who_rests_comes_to_rest_without_trembling(void**) {
+  ClosedLoop loop = beside(Kind::kPerson);
+  loop.run(10.0);
+  double largest_change_radps = 0.0;
+  for (JointVector last_radps = loop.last.command.velocity_radps; loop.now_s() < 50.0;) {
+    loop.cycle();
+    const JointVector& now_radps = loop.last.command.velocity_radps;
+    largest_change_radps = std::max(largest_change_radps, (now_radps - last_radps).cwiseAbs().maxCoeff());
+    last_radps = now_radps;
+  }
+  check(largest_change_radps < 0.002, "the velocity changes by %g rad/s in a cycle", largest_change_radps);
+  const double largest_radps = loop.last.command.velocity_radps.cwiseAbs().maxCoeff();
+  check(largest_radps < 0.02, "%g rad/s", largest_radps);
+}
+
+void the_target_is_reached_when_the_person_has_left(void**) {
+  ClosedLoop loop = beside(Kind::kPerson);
+  loop.run(6.0);
+  check(loop.last.report.target_distance_m > 0.02, "%g m", loop.last.report.target_distance_m);
+  loop.obstacles->count = 0;
+  loop.run(4.0);
+  check(loop.last.report.target_distance_m < 1e-3, "%g m", loop.last.report.target_distance_m);
+}
+
+void in_hold_a_person_does_not_drive_the_arm_away(void**) {
+  ClosedLoop loop = beside(Kind::kPerson, false);
+  const JointVector start_rad = loop.arm.position_rad;
+  loop.run(6.0);
+  assert_true(loop.last.report.mode == Mode::kHold);
+  const double moved_rad = (loop.arm.position_rad - start_rad).cwiseAbs().maxCoeff();
+  check(moved_rad < 0.01, "%g rad", moved_rad);
+}
+
+void without_its_weight_there_is_no_separation(void**) {
+  ClosedLoop loop = beside(Kind::kPerson);
+  loop.model.settings.shield.person_weight = 0.0;
+  loop.run(6.0);
+  check(loop.last.report.target_distance_m < 1e-3, "%g m", loop.last.report.target_distance_m);
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test(the_arm_makes_room_for_a_person_and_not_for_a_thing),
+      cmocka_unit_test(an_arm_beside_a_person_who_rests_comes_to_rest_without_trembling),
+      cmocka_unit_test(the_target_is_reached_when_the_person_has_left),
+      cmocka_unit_test(in_hold_a_person_does_not_drive_the_arm_away),
+      cmocka_unit_test(without_its_weight_there_is_no_separation),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
