@@ -85,6 +85,24 @@ def chain(urdf, base, tip):
             for joint in parse(urdf, base, tip)[0]]
 
 
+def limits(urdf, base, tip, settings):
+    """(positions, velocities), each joints x 2 with lower and upper: of the section `limits`, else of the URDF."""
+    joints = [joint for joint in parse(urdf, base, tip)[0] if joint.get("type") != "fixed"]
+    endless = [joint.get("type") == "continuous" for joint in joints]
+
+    def of(attribute, key, without):
+        values = [without if one and attribute != "velocity" else vector(joint, "limit", attribute, [without])[0]
+                  for joint, one in zip(joints, endless)]
+        given = settings.get(key, values)
+        if isinstance(given, list):
+            return np.array(given, float)
+        return np.array([value if joint.get("type") == "prismatic" else given  # one number for all is in rad
+                         for value, joint in zip(values, joints)], float)
+    fastest = of("velocity", "velocity_radps", np.nan)
+    return (np.stack([of("lower", "lower_rad", -np.inf), of("upper", "upper_rad", np.inf)], axis=1),
+            np.stack([-fastest, fastest], axis=1))
+
+
 def link_poses(links, q_rad):
     """(position 3, rotation 3x3) in the base frame of the base and of every joint's child link; the tip is the last."""
     position, rotation, values = np.zeros(3), np.eye(3), iter(q_rad)
@@ -183,12 +201,6 @@ def robot_of(config, arguments):
         if not (getattr(arguments, name) or robot.get(name)):
             sys.exit(f"{config}: robot has no {name}, and there is no --{name}")
     return arguments.urdf or runs.ROOT / robot["urdf"], arguments.base or robot["base"], arguments.tip or robot["tip"]
-
-
-def channels_of(config):
-    """Channel name on the network -> key of wire.TYPES, by the section `channels` of the configuration."""
-    channels = section(config, "channels")
-    return {channels.get(name.lower(), name): name for name in wire.TYPES}
 
 
 def add_robot(parser):

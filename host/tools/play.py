@@ -11,16 +11,9 @@ import numpy as np
 
 import plots
 import runs
+import verdict
 
 TO_OTHER_ARMS = "least clearance to the other arms"
-
-
-def contact(run):
-    in_contact = np.flatnonzero(run.touching())
-    if not in_contact.size:
-        return "no"
-    first = in_contact[0]
-    return f"yes, {'links ' if run.touching_itself()[first] else ''}at {run.columns['t_s'][first]:.2f} s"
 
 
 def metres(value_m):
@@ -32,7 +25,7 @@ def column(run):
     speeds = run.family(r"qd\d+_radps")
     return [metres(run.columns["axis_distance_m"].min()), plots.length(run.columns["target_distance_m"][-1]),
             metres(run.columns["clearance_m"].min()), metres(run.columns["neighbour_clearance_m"].min()),
-            f"{np.abs(speeds).max():.2f} rad/s", contact(run)]
+            f"{np.abs(speeds).max():.2f} rad/s", verdict.contact(run)]
 
 
 def table(paper, sidestep):

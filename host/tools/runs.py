@@ -117,6 +117,11 @@ def file_of(arm, file):
     return file.with_stem(f"{file.stem}-{arm['name']}") if "name" in arm else file
 
 
+def verdict_file(log):
+    """The file beside a log that says whether the run met the scenario's expectations."""
+    return log.with_suffix(".verdict")
+
+
 def config_of(scenario):
     return ROOT / scenario["config"]
 
@@ -183,10 +188,12 @@ def wait(processes, limit_s):
 def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
-    In real time (lockstep=False) the simulator writes to this terminal. It records all messages in `log`. RunFailed if
-    a process fails.
+    In real time (lockstep=False) the simulator writes to this terminal. It records all messages in `log`, beside which
+    is then its verdict. RunFailed if a process fails.
     """
     scenario = load_scenario(scenario_file)
+    if log:
+        verdict_file(log).unlink(missing_ok=True)
     record.parent.mkdir(parents=True, exist_ok=True)
     common = ["--lockstep"] * lockstep + (["--lcm-url", lcm_url] if lcm_url else [])
     commands = {f"controller-{arm['name']}" if "name" in arm else "controller":
@@ -211,6 +218,8 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
     for name, code in codes.items():
         if code or name in lost:
             raise RunFailed(f"build/controller {ending(code)}: {last_line(logs[name])}")
+    if log:
+        verdict_file(log).write_text("met" if sim == HELD else "not met")
     return sim
 
 

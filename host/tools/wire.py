@@ -70,23 +70,33 @@ def command_line():
     return [f" {word}" if re.match(r"-[\d.]", word) else word for word in sys.argv[1:]]
 
 
-class LatestMessages(dict):
+class Messages(dict):
     """Channel -> latest valid message, and in `received_s` when it came. A channel without a message yet is missing.
 
     channels: a list of keys of TYPES, or a dict from channel name to key of TYPES.
     """
 
-    def __init__(self, channels, lcm_url):
+    def __init__(self, channels):
         super().__init__()
-        self.network = connect(lcm_url)
-        self.received_s = {}  # monotonic clock
+        self.received_s = {}
         self.kinds = channels if isinstance(channels, dict) else {channel: channel for channel in channels}
-        for channel in self.kinds:
-            self.network.subscribe(channel, self._store)
 
-    def _store(self, channel, data):
-        if (message := decoded(self.kinds[channel], data)) is not None:
-            self[channel], self.received_s[channel] = message, time.monotonic()
+    def store(self, channel, data, now_s):
+        """Returns whether the bytes are a message of the channel's type."""
+        message = decoded(self.kinds[channel], data)
+        if message is not None:
+            self[channel], self.received_s[channel] = message, now_s
+        return message is not None
+
+
+class LatestMessages(Messages):
+    """Messages as they come over the network; the times are of the monotonic clock."""
+
+    def __init__(self, channels, lcm_url):
+        super().__init__(channels)
+        self.network = connect(lcm_url)
+        for channel in self.kinds:
+            self.network.subscribe(channel, lambda name, data: self.store(name, data, time.monotonic()))
 
     def ages_s(self):
         """Channel -> s since its latest message."""

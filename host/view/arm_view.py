@@ -12,6 +12,11 @@ KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "JOINT_TARGET", "CONTROLLER_STATUS"
 SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
           "cylinder": (obstacle_t.CYLINDER, ["radius_m", "height_m"]), "box": (obstacle_t.BOX, [])}
 KNOWN = {number for number, _ in SHAPES.values()}
+FAR_M = 1e4  # what is farther, larger or no number is not drawn
+
+
+def is_near(*values):
+    return all(bool(np.all(np.abs(value) < FAR_M)) for value in values)
 
 
 def static_obstacle(settings, number):
@@ -23,6 +28,15 @@ def static_obstacle(settings, number):
     return obstacle
 
 
+def link_obstacle(shape, position, rotation):
+    """An arm.Shape as obstacle_t for other arms. position, rotation: of its link."""
+    obstacle = obstacle_t()
+    obstacle.shape, obstacle.size = SHAPES[shape.kind][0], [*shape.size, 0.0, 0.0][:3]
+    obstacle.position = position + rotation @ shape.position
+    obstacle.quaternion = arm.quaternion_of(rotation @ shape.rotation)
+    return obstacle
+
+
 class ArmView:
     """robot: (URDF, base, tip). name: of one arm among several. latest: wire.LatestMessages of channels()."""
 
@@ -31,6 +45,7 @@ class ArmView:
         neighbours = settings.get("neighbours") or {}
         self.name = name
         self.chain, self.shapes = arm.chain(*robot), arm.shapes(*robot)
+        self.joints = sum(joint.axis is not None for joint in self.chain)
         package_path = (settings.get("robot") or {}).get("package_path") or []
         self.visuals = visuals(*robot, [runs.ROOT / path for path in package_path])
         self.names = {kind: (settings.get("channels") or {}).get(kind.lower(), kind) for kind in KINDS}
@@ -59,7 +74,8 @@ class ArmView:
     def obstacles(self, latest):
         message = latest.get(self.names["OBSTACLES"])
         obstacles = message.obstacles if message else []
-        return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in KNOWN]
+        return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in KNOWN and
+                is_near(obstacle.position, obstacle.quaternion, obstacle.size, obstacle.velocity)]
 
     def links_of_others(self, latest):
         return [link for name in self.neighbours if name in latest for link in latest[name].obstacles]
@@ -67,10 +83,15 @@ class ArmView:
     def link_poses(self, latest):
         """The link poses, the tool last; None before the first arm state."""
         state = latest.get(self.names["ARM_STATE"])
-        if state is None or state.num_joints != sum(joint.axis is not None for joint in self.chain):
+        if state is None or state.num_joints != self.joints or not is_near(state.joint_position):
             return None
         return [(self.point(position), self.rotation @ rotation)
                 for position, rotation in arm.link_poses(self.chain, state.joint_position)]
+
+    def links(self, latest):
+        """The arm's shapes as obstacles for other arms; none before the first arm state."""
+        poses = self.link_poses(latest)
+        return [link_obstacle(shape, *poses[shape.frame]) for shape in self.shapes] if poses else []
 
     def target(self, latest):
         """Where the tool shall be, by the newest target or posture; None without either."""
@@ -78,7 +99,8 @@ class ArmView:
         if not kinds:
             return None
         newest = max(kinds, key=lambda kind: latest.received_s[self.names[kind]])
-        return None if (goal := arm.goal_m(self.chain, latest[self.names[newest]])) is None else self.point(goal)
+        goal = arm.goal_m(self.chain, latest[self.names[newest]])
+        return self.point(goal) if goal is not None and is_near(goal) else None
 
     def state(self, latest):
         """The latest status or None, and kind of message -> s since the latest one of this arm."""
@@ -88,4 +110,5 @@ class ArmView:
 
     def guide(self, latest):
         status = latest.get(self.names["CONTROLLER_STATUS"])
-        return [self.point(point) for point in status.guide_tool] if status and status.guide_horizon > 0 else []
+        guided = status and status.guide_horizon > 0 and is_near(status.guide_tool)
+        return [self.point(point) for point in status.guide_tool] if guided else []

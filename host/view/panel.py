@@ -5,6 +5,7 @@ import time
 import watch
 import wire
 from scene import ARROW_S, BANDS, GUIDE, OBSTACLE, SURROUNDING, TARGET, TRAIL
+from stage import Layers
 
 STYLE = "<div style='font-size:0.85em;padding:0 1em'>"
 DIRECT = "direct: the law alone arrives"
@@ -33,15 +34,18 @@ def words_of(status, ages_s):
 
 
 class Panel:
-    def __init__(self, server, arms, has_visuals):
+    def __init__(self, server, arms, layers):
         gui = server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         gui.set_panel_label("Sidestep")
         self.texts = [gui.add_html("") for _ in arms]
-        self.visuals = gui.add_checkbox("robot", has_visuals, disabled=not has_visuals)
-        self.shapes = gui.add_checkbox("controller's shapes", not has_visuals)
-        self.arrows = gui.add_checkbox("velocities", True)
-        self.trail = gui.add_checkbox("path of the tool", True)
+        self.boxes = Layers(gui.add_checkbox("robot", layers.visuals, disabled=not layers.visuals),
+                            gui.add_checkbox("controller's shapes", layers.shapes),
+                            gui.add_checkbox("velocities", layers.arrows),
+                            gui.add_checkbox("path of the tool", layers.trail))
+
+    def layers(self):
+        return Layers(*(box.value for box in self.boxes))
 
     def show(self, states):
         """states: (status or None, ages_s) of each arm."""

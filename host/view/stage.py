@@ -1,0 +1,78 @@
+"""Arms, obstacles and paths of one world on a viser server: what the latest messages say, live or in a recording."""
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+
+import geometry
+import scene
+
+TRAIL_STEP_M = 0.01
+JUMP_M = 0.3          # a tool motion between two drawings that only a new run can cause
+CAMERA_M, LOOK_AT_M, FIELD_RAD = (1.1, -1.6, 1.1), (0.1, 0.0, 0.5), 0.75  # from the middle of the arms' bases
+
+
+class Layers(NamedTuple):
+    """What is drawn."""
+    visuals: bool
+    shapes: bool
+    arrows: bool = True
+    trail: bool = True
+
+
+def first_layers(arms):
+    """The arms by their visual meshes where one has any, else by the controller's shapes."""
+    has_visuals = any(one.visuals for one in arms)
+    return Layers(has_visuals, not has_visuals)
+
+
+class Stage:
+    """arms: arm_view.ArmView each; all have the same obstacles. trail_points: length of a tool's path, TRAIL_STEP_M."""
+
+    def __init__(self, server, arms, trail_points):
+        self.arms = arms
+        self.trails = [deque(maxlen=trail_points) for _ in arms]
+        self.surroundings = [obstacle for one in arms for obstacle in one.surroundings]
+        for i, obstacle in enumerate(self.surroundings):
+            obstacle.id = -2 - i  # unique among several arms
+        middle = np.mean([one.position for one in arms], axis=0)
+        server.initial_camera.position = middle + CAMERA_M
+        server.initial_camera.look_at = middle + LOOK_AT_M
+        server.initial_camera.fov = FIELD_RAD
+        server.scene.configure_default_lights(cast_shadow=False)  # shadows cost most without a GPU
+        server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.25, section_size=1.0)
+        self.arm_nodes = [scene.ArmNodes(server.scene, one) for one in arms]
+        self.obstacle_nodes = scene.ObstacleNodes(server.scene)
+
+    def draw(self, latest, layers, colours):
+        """Draws the wire.Messages and returns the tool positions, 3, m, each None before the arm's first state.
+
+        colours: whether the links' colours are computed, which takes longest.
+        """
+        obstacles = self.arms[0].obstacles(latest) + self.surroundings
+        self.obstacle_nodes.shows_arrows = layers.arrows
+        self.obstacle_nodes.draw(obstacles)
+        return [self.draw_arm(i, latest, layers, obstacles if colours else None) for i in range(len(self.arms))]
+
+    def draw_arm(self, i, latest, layers, obstacles):
+        """Draws one arm and returns its tool position; None before its first arm state. obstacles: to colour it."""
+        one, nodes, trail = self.arms[i], self.arm_nodes[i], self.trails[i]
+        link_poses = one.link_poses(latest)
+        if link_poses is None:
+            return None
+        extend(trail, link_poses[-1][0])
+        nodes.place(link_poses)
+        nodes.mark(one.target(latest), trail if layers.trail else [], one.guide(latest))
+        nodes.show(layers.visuals, layers.shapes)
+        if obstacles is not None:
+            others = [link for other in self.arms if other is not one for link in other.links(latest)]
+            near = obstacles + others + one.links_of_others(latest)
+            nodes.colour([geometry.clearance_m(shape, link_poses[shape.frame], near) for shape in one.shapes])
+        return link_poses[-1][0]
+
+
+def extend(trail, tool):
+    if trail and np.linalg.norm(tool - trail[-1]) > JUMP_M:
+        trail.clear()
+    if not trail or np.linalg.norm(tool - trail[-1]) > TRAIL_STEP_M:
+        trail.append(tool)
