@@ -75,6 +75,7 @@ LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
 READY    := $(BUILD)/.ready
 VIEW     := $(READY).view $(BUILD)/.python-view
+TESTED   := $(READY).test $(BUILD)/.python-view
 SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
@@ -82,12 +83,12 @@ SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 run: all ## play SCENARIO (default paper-c) in real time, then print a table and draw the figures
 	@$(PYTHON) host/tools/play.py host/scenarios/$(SCENARIO).yaml
 
-test: all $(READY).test $(TESTS) ## run all tests; the last line is: N passed, N failed
+test: all $(TESTED) $(TESTS) ## run all tests; the last line is: N passed, N failed
 	@$(PYTHON) tests/run.py $(TESTS)
 
 ##@ Hardening
 
-faults: all $(READY).test $(FAULTS) ## run the fault tests TIMES (10) times; tests/faults/README.md lists the faults
+faults: all $(TESTED) $(FAULTS) ## run the fault tests TIMES (10) times; tests/faults/README.md lists the faults
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
 peers-test: all $(BUILD)/.python-peers ## compare with Pinocchio, play 100 witnessed scenes with other arms and Drake's iiwa (10 min)
@@ -99,7 +100,7 @@ fuzz: all $(READY).fuzz ## fuzz messages, URDF and configuration under ASan and 
 	@$(MAKE) $(FUZZERS)
 	@tests/fuzz/run $(or $(SECONDS),60)
 
-sanitize: all $(READY).test ## run all tests under ASan and UBSan, those with threads under TSan
+sanitize: all $(TESTED) ## run all tests under ASan and UBSan, those with threads under TSan
 	@MAKEFLAGS= tests/sanitize
 
 arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm64 in build/arm64, run the unit tests under qemu
@@ -107,7 +108,7 @@ arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm
 
 ##@ Building
 
-setup: $(READY) $(READY).test $(READY).lint ## only install what is missing: Debian packages and build/venv (SETUP=no: no target does)
+setup: $(READY) $(TESTED) $(READY).lint ## only install what is missing: Debian packages and build/venv (SETUP=no: no target does)
 
 all: $(PROGRAMS) ## set up what is missing and build the programs
 
@@ -148,13 +149,14 @@ view: all $(VIEW) ## play SCENARIO live in the browser on PORT (7000), repeated 
 play: all $(VIEW) ## show an arm without target and obstacles, and the commands that send them
 	@$(PYTHON) host/view/show.py host/scenarios/play.yaml --port $(PORT)
 
-view-test: all $(VIEW) ## check a screenshot of the view in headless Chromium, build/figures/view.png
+view-test: all $(VIEW) ## check screenshots of the view and of a report in headless Chromium, in build/figures
 	@$(PYTHON) tests/view/picture.py
+	@$(PYTHON) tests/view/report_picture.py
 
 spy: $(BUILD)/types.jar ## start lcm-spy, which decodes the message types
 	@java -cp $(SPY):$< lcm.spy.Spy
 
-report: all ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)
+report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)
 	@$(PYTHON) host/tools/report.py $(or $(LOG),no-run-yet) -o $(BUILD)/report.html
 
 ##@ Checking

@@ -1,4 +1,6 @@
 """LCM logs of runs, as build/sim --log, record.py and lcm-logger write them."""
+from pathlib import Path
+
 import lcm
 import numpy as np
 
@@ -51,4 +53,5 @@ def run_of(file, arms, one, config):
         raise NoRun(f"{file}: no CONTROLLER_STATUS after an ARM_STATE of {one.joints} joints")
     joints = range(1, one.joints + 1)
     names = ["t_s", *FIELDS.values(), *(f"q{i}_rad" for i in joints), *(f"qd{i}_radps" for i in joints)]
-    return runs.Run(one.name, "", {"config": config}, dict(zip(names, np.array(rows, float).T)), runs.HELD)
+    columns = dict(zip(names, np.array(rows, float).T))
+    return runs.Run(one.name, "", {"config": Path(config).absolute()}, columns, runs.HELD)

@@ -37,9 +37,6 @@ void visual_meshes_are_found_beside_the_urdf_and_in_packages(void**) {
 void a_rotation_is_restored_from_its_quaternion(void**) {
   passes("quaternions");
 }
-void a_log_becomes_one_page_that_needs_no_network(void**) {
-  passes("log_becomes_page");
-}
 void a_log_replays_with_lcm_logplayer(void**) {
   passes("log_replays");
 }
@@ -85,7 +82,6 @@ int main() {
       cmocka_unit_test_teardown(visual_meshes_are_found_beside_the_urdf_and_in_packages,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
-      cmocka_unit_test_teardown(a_log_becomes_one_page_that_needs_no_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),
