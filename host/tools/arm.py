@@ -88,18 +88,18 @@ def chain(urdf, base, tip):
 def limits(urdf, base, tip, settings):
     """(positions, velocities), each joints x 2 with lower and upper: of the section `limits`, else of the URDF."""
     joints = [joint for joint in parse(urdf, base, tip)[0] if joint.get("type") != "fixed"]
-    endless = [joint.get("type") == "continuous" for joint in joints]
 
-    def of(attribute, key, without):
-        values = [without if one and attribute != "velocity" else vector(joint, "limit", attribute, [without])[0]
-                  for joint, one in zip(joints, endless)]
-        given = settings.get(key, values)
-        if isinstance(given, list):
-            return np.array(given, float)
-        return np.array([value if joint.get("type") == "prismatic" else given  # one number for all is in rad
-                         for value, joint in zip(values, joints)], float)
-    fastest = of("velocity", "velocity_radps", np.nan)
-    return (np.stack([of("lower", "lower_rad", -np.inf), of("upper", "upper_rad", np.inf)], axis=1),
+    def of(key, attribute, without):
+        found = []
+        for i, joint in enumerate(joints):
+            endless = joint.get("type") == "continuous" and attribute != "velocity"
+            of_urdf = without if endless else vector(joint, "limit", attribute, [without])[0]
+            given = settings.get(key, of_urdf)
+            for_all = of_urdf if joint.get("type") == "prismatic" else given  # one number for all is in rad
+            found.append(given[i] if isinstance(given, list) else for_all)
+        return np.array(found, float)
+    fastest = of("velocity_radps", "velocity", np.nan)
+    return (np.stack([of("lower_rad", "lower", -np.inf), of("upper_rad", "upper", np.inf)], axis=1),
             np.stack([-fastest, fastest], axis=1))
 
 

@@ -9,11 +9,15 @@ import watch
 import wire
 from plots import BLACK, CONTACT, GREEN, JOINTS, ORANGE, SKY, TARGET, plt
 
-MODE_COLOURS = dict(zip(wire.MODES, ("0.75", SKY, GREEN, ORANGE, CONTACT)))
-FORESIGHT = {wire.controller_status_t.GUIDED: ("guided", "0.8"), wire.controller_status_t.WAITING: ("no path known", "0.5")}
 REST_CLEARANCE_M = 0.004  # of a configuration without shield.rest_clearance_m
+GUIDED, WAITING = wire.controller_status_t.GUIDED, wire.controller_status_t.WAITING
+REDS = ("#E88080", "#D04040", "#F0B0B0")
+# Rows of the band: column of the run -> value -> (word, colour).
+BAND = {"fault": {fault: (word, REDS[fault % 3]) for fault, word in watch.FAULTS.items() if fault},
+        "foresight": {GUIDED: ("guided", "0.8"), WAITING: ("no path known", "0.5")},
+        "mode": dict(zip(wire.MODES, zip(wire.MODES.values(), ("0.75", SKY, GREEN, ORANGE, REDS[0]))))}
+LEAST_SHARE = 0.002  # of the time axis: a shorter stretch is drawn as long
 WORD_SHARE = 0.07   # of the time axis: a shorter stretch has no room for its name
-ROWS = {"mode": 2, "foresight": 1, "fault": 0}
 PANELS = dict(figsize=(11, 14), sharex=True, layout="constrained", gridspec_kw={"height_ratios": [1, 2, 2, 2, 2, 2]})
 MOST_ROWS = 20000   # of a curve
 
@@ -25,30 +29,23 @@ def stretches(t_s, values):
     return list(zip(values[starts].astype(int), times_s[:-1], np.diff(times_s)))
 
 
-def draw_row(axes, run, name, looks):
-    """One row of the band. looks: value -> (word, colour); other values are not drawn."""
-    t_s = run.columns["t_s"]
-    for value, start_s, duration_s in stretches(t_s, run.columns[name]):
-        if value not in looks:
-            continue
-        word, colour = looks[value]
-        axes.broken_barh([(start_s, max(duration_s, 0.002 * t_s[-1]))], (ROWS[name] - 0.4, 0.8), color=colour)
-        if duration_s > WORD_SHARE * (t_s[-1] - t_s[0]):
-            axes.text(start_s + duration_s / 2, ROWS[name], word, ha="center", va="center")
-
-
 def plot_band(axes, run):
-    """Modes, foresight and faults by name."""
-    modes = {mode: (name, MODE_COLOURS[mode]) for mode, name in wire.MODES.items()}
-    faults = {fault: (text, CONTACT) for fault, text in watch.FAULTS.items() if fault}
-    for name, looks in (("mode", modes), ("foresight", FORESIGHT), ("fault", faults)):
-        draw_row(axes, run, name, looks)
-        for value in np.unique(run.columns[name]).astype(int):
-            if value in looks and name != "fault":
-                axes.plot([], [], color=looks[value][1], linewidth=6, label=looks[value][0])
-    axes.set_yticks(list(ROWS.values()), list(ROWS))
+    """Modes, foresight and faults by name; the name of a short stretch is only in the legend."""
+    t_s, shown = run.columns["t_s"], set()
+    length_s = t_s[-1] - t_s[0]
+    for height, (name, looks) in enumerate(BAND.items()):
+        for value, start_s, duration_s in stretches(t_s, run.columns[name]):
+            if value not in looks:
+                continue
+            word, colour = looks[value]
+            axes.broken_barh([(start_s, max(duration_s, LEAST_SHARE * length_s))], (height - 0.4, 0.8), color=colour,
+                             label=None if word in shown else word)
+            shown.add(word)
+            if duration_s > WORD_SHARE * length_s:
+                axes.text(start_s + duration_s / 2, height, word, ha="center", va="center")
+    axes.set_yticks(range(len(BAND)), list(BAND))
     axes.grid(axis="y", visible=False)
-    plots.finish(axes, "Mode, foresight, faults", len(modes) + len(FORESIGHT), ylim=(-0.5, 2.5))
+    plots.finish(axes, "Mode, foresight, faults", 10, ylim=(-0.5, len(BAND) - 0.5))
 
 
 def plot_clearance(axes, run):
@@ -56,7 +53,8 @@ def plot_clearance(axes, run):
     axes.plot(run.columns["t_s"], values_m, color=plots.BLUE, label="nearest obstacle, as the controller knows it")
     rest_m = plots.section(run, "shield").get("rest_clearance_m", REST_CLEARANCE_M)
     axes.axhline(rest_m, color=BLACK, linewidth=1, linestyle=":", label=f"the same to what rests, {rest_m * 1e3:g} mm")
-    plots.finish_clearance(axes, run, min(values_m[np.isfinite(values_m)], default=0.0), "Clearance between surfaces", 4)
+    least_m = min(values_m[np.isfinite(values_m)], default=0.0)
+    plots.finish_clearance(axes, run, least_m, "Clearance between surfaces", 4)
 
 
 def plot_target_distance(axes, run):
@@ -103,11 +101,11 @@ def svg(run, limits):
     plot_joints(panels[4], run, r"q\d+_rad", "position, rad", "Joint positions", limits[0])
     plot_cycle_time(panels[5], run)
     for axes in panels:
-        mark_faults(axes, run)
         axes.tick_params(labelbottom=True)
         axes.set_xlabel("")
     for axes in panels[1:]:
         plots.mark_foresight(axes, run)
+        mark_faults(axes, run)
     panels[-1].set_xlabel("time, s")
     panels[0].set_xlim(run.columns["t_s"][0], run.columns["t_s"][-1])
     file = io.BytesIO()

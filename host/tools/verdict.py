@@ -6,6 +6,8 @@ import runs
 import watch
 import wire
 
+MOST_FAULTS = 5  # that are named
+
 
 def contact(run):
     """Of a run with the columns of the simulator's record."""
@@ -33,8 +35,10 @@ def faults(run):
     """Of a run with the column `fault`: which began when."""
     values = run.columns["fault"]
     begins = np.flatnonzero((values != 0) & (np.diff(values, prepend=0) != 0))
-    return "; ".join(f"{watch.FAULTS.get(values[row], 'unknown')} at {run.columns['t_s'][row]:.2f} s"
-                     for row in begins) or "none"
+    texts = [f"{watch.FAULTS.get(values[row], 'unknown')} at {run.columns['t_s'][row]:.2f} s"
+             for row in begins[:MOST_FAULTS]]
+    more = [f"{len(begins) - MOST_FAULTS} more"] if len(begins) > MOST_FAULTS else []
+    return "; ".join(texts + more) or "none"
 
 
 def record_of(run, log):

@@ -21,7 +21,7 @@ def words_of(one, latest):
     status = latest.get(one.names["CONTROLLER_STATUS"])
     if status is None:
         return ""
-    return " ".join(filter(None, (one.name, wire.MODES.get(status.mode, ""), watch.message_text(status))))
+    return f"{one.name} {wire.MODES.get(status.mode, status.mode)}: {watch.message_text(status)}".strip()
 
 
 def page(log, arms, duration_s):
