@@ -124,11 +124,6 @@ def goal_m(links, target):
     return link_poses(links, target.joint_position)[-1][0]
 
 
-def joint_points(links, q_rad):
-    """N x 3, m, base frame: the origins of the base and of every joint; the tip is the last."""
-    return np.array([position for position, _ in link_poses(links, q_rad)])
-
-
 def size_of(geometry):
     kind = geometry[0].tag
     if kind == "box":

@@ -7,7 +7,7 @@ import numpy as np
 import plots
 import watch
 import wire
-from plots import BLACK, CONTACT, GREEN, JOINTS, ORANGE, SKY, TARGET, plt
+from plots import BLACK, CONTACT, GREEN, JOINTS, ORANGE, SKY, TARGET, YELLOW, plt
 
 REST_CLEARANCE_M = 0.004  # of a configuration without shield.rest_clearance_m
 GUIDED, WAITING = wire.controller_status_t.GUIDED, wire.controller_status_t.WAITING
@@ -15,7 +15,7 @@ REDS = ("#E88080", "#D04040", "#F0B0B0")
 # Rows of the band: column of the run -> value -> (word, colour).
 BAND = {"fault": {fault: (word, REDS[fault % 3]) for fault, word in watch.FAULTS.items() if fault},
         "foresight": {GUIDED: ("guided", "0.8"), WAITING: ("no path known", "0.5")},
-        "mode": dict(zip(wire.MODES, zip(wire.MODES.values(), ("0.75", SKY, GREEN, ORANGE, REDS[0]))))}
+        "mode": dict(zip(wire.MODES, zip(wire.MODES.values(), (YELLOW, SKY, GREEN, ORANGE, REDS[0]))))}
 LEAST_SHARE = 0.002  # of the time axis: a shorter stretch is drawn as long
 WORD_SHARE = 0.07   # of the time axis: a shorter stretch has no room for its name
 PANELS = dict(figsize=(11, 14), sharex=True, layout="constrained", gridspec_kw={"height_ratios": [1, 2, 2, 2, 2, 2]})

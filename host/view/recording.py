@@ -9,7 +9,7 @@ import watch
 import wire
 from stage import Stage, first_layers
 
-FRAME_S = 1 / 30       # least time between two frames
+FRAME_S = 0.03         # least time between two frames
 MOST_FRAMES = 4000
 CROWD = 100            # obstacles; more of them make the frames rarer
 SLOW = 6               # colours change every SLOW frames
@@ -28,9 +28,10 @@ def page(log, arms, duration_s):
     """HTML that plays the log, viser's client included. arms: arm_view.ArmView each; duration_s: of the log."""
     with contextlib.redirect_stdout(io.StringIO()):  # viser prints the address of its server, which nobody needs
         server = viser.ViserServer(host="localhost", port=0, verbose=False)
-        recording = recorded(server, log, arms, max(FRAME_S, duration_s / MOST_FRAMES))
-        server.stop()
-    return recording.as_html()
+        try:
+            return recorded(server, log, arms, max(FRAME_S, duration_s / MOST_FRAMES)).as_html()
+        finally:
+            server.stop()
 
 
 def recorded(server, log, arms, step_s):
