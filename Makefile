@@ -121,6 +121,12 @@ bench: $(BUILD)/bench ## measure the CPU time of a hot step and of the baseline 
 figures: all ## draw the figures of all one-arm scenarios with both laws, and the trade-off over the paper's gains
 	@$(PYTHON) host/tools/figures.py
 
+animation: all ## draw SCENARIO as an animated GIF of both laws in build/figures
+	@$(PYTHON) host/tools/animation.py host/scenarios/$(SCENARIO).yaml
+
+docs: all ## make the tables and pictures of README.md and docs/results.md that come from scenarios
+	@$(PYTHON) host/tools/docs.py
+
 timing: all $(READY).timing ## measure the real-time loop and cyclictest, idle and under CPU load, SECONDS (30) each
 	@$(PYTHON) host/tools/timing.py --duration $(or $(SECONDS),30)
 
@@ -175,7 +181,7 @@ help: ## print this list
 	@awk -F '"' '/^title:/ {name = FILENAME; sub(".*/", "", name); sub(".yaml", "", name); printf "  %-17s %s\n", name, $$2}' \
 	  host/scenarios/*.yaml
 
-.PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures timing soak install uninstall deb install-test view play view-test spy report lint clean help
+.PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures animation docs timing soak install uninstall deb install-test view play view-test spy report lint clean help
 
 # Set-up: Debian packages, then the virtual environment. The stamps make a second call start at once.
 ifeq ($(SETUP),no)

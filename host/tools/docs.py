@@ -15,12 +15,16 @@ import numpy as np
 import yaml
 from PIL import Image
 
+import animation
 import play
 import plots
 import runs
 
 PAGES = [runs.ROOT / "README.md", runs.ROOT / "docs/results.md"]
-PICTURES = {runs.ROOT / f"host/scenarios/{name}.png": name for name in ("closing-gap", "paper-c")}
+# Picture -> its scenario, and what draws it from both runs.
+PICTURES = {runs.ROOT / "host/scenarios/closing-gap.gif": ("closing-gap", animation.save),
+            runs.ROOT / "host/scenarios/closing-gap.png": ("closing-gap", plots.comparison),
+            runs.ROOT / "host/scenarios/paper-c.png": ("paper-c", plots.comparison)}
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
             "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
@@ -147,9 +151,10 @@ def made(text, done):
 
 
 def numbers_of(picture):
-    """plots.numbers() of a picture that plots.comparison() has drawn; nothing for another file."""
+    """plots.numbers() of a picture that PICTURES names; nothing for another file."""
     try:
-        return Image.open(picture).text.get(plots.NUMBERS, "").splitlines()
+        information = Image.open(picture).info
+        return information.get(plots.NUMBERS, information.get("comment", b"").decode()).splitlines()
     except OSError:
         return []
 
@@ -172,13 +177,13 @@ def main():
         different += differences(runs.shown(file), there.splitlines(), now.splitlines())
         if not check:
             file.write_text(now)
-    for picture, name in PICTURES.items():
+    for picture, (name, draw) in PICTURES.items():
         if name not in names:
             continue
         both = [done[name, law][0] for law in runs.LAWS]
         different += differences(runs.shown(picture), numbers_of(picture), plots.numbers(both))
         if not check:
-            plots.comparison(both, picture)
+            draw(both, picture)
     print("\n".join(different) if different else "everything is up to date")
     if check and different:
         print("run make docs", file=sys.stderr)

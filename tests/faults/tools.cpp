@@ -49,6 +49,9 @@ void impossible_requests_are_refused_in_one_line(void**) {
 void senders_say_what_they_send(void**) {
   passes("announcements");
 }
+void a_moving_picture_says_what_the_run_did(void**) {
+  passes("moving_pictures");
+}
 void the_error_about_an_unknown_scenario_lists_the_scenarios(void**) {
   passes("unknown_scenario");
 }
@@ -83,6 +86,7 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_moving_picture_says_what_the_run_did, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(senders_say_what_they_send, sidestep::test::kill_processes),
