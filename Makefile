@@ -73,6 +73,8 @@ LIBRARIES := $(foreach l,support campaign relay sim firmware,$(BUILD)/lib$(l).a)
 SHARED   := $(BUILD)/libsidestep.so.0
 LCM_TYPES := $(wildcard lcmtypes/*.lcm lcmtypes/*/*.lcm)
 WIRE     := $(BUILD)/lcm/.made
+# Makes the Python types a package: pip install build/lcm/python.
+PYPROJECT := $(BUILD)/lcm/python/pyproject.toml
 READY    := $(BUILD)/.ready
 VIEW     := $(READY).view $(BUILD)/.python-view
 TESTED   := $(READY).test $(BUILD)/.python-view
@@ -110,7 +112,7 @@ arm64: all $(READY).test $(READY).arm64 $(BUILD)/arm64/.sysroot ## build for arm
 
 setup: $(READY) $(TESTED) $(READY).lint ## only install what is missing: Debian packages and build/venv (SETUP=no: no target does)
 
-all: $(PROGRAMS) ## set up what is missing and build the programs
+all: $(PROGRAMS) $(PYPROJECT) ## set up what is missing and build the programs
 
 campaign: all ## run the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
@@ -222,6 +224,9 @@ $(WIRE): $(LCM_TYPES) | $(READY)
 	lcm-gen -x --cpp-hpath $(BUILD)/lcm $(LCM_TYPES)
 	lcm-gen -p --ppath $(BUILD)/lcm/python $(LCM_TYPES)
 	@touch $@
+
+$(PYPROJECT): host/setup/pyproject.toml.in VERSION $(WIRE)
+	@sed "s/@VERSION@/$$(cat VERSION)/" $< >$@
 
 # Changes when the flags do: then everything is compiled again.
 $(BUILD)/.flags: $(if $(COUNTING),,always) | $(READY)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Starts the script in share/sidestep/tools that has the name of this program."""
+"""Starts the script in share/sidestep/tools that has the name of this program. The types are in share/sidestep/python."""
 import runpy
 import sys
 from pathlib import Path
 
 name = Path(sys.argv[0]).name
 sys.dont_write_bytecode = True  # `make uninstall` would leave the bytecode behind
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "share/sidestep/tools"))
+share = Path(__file__).resolve().parents[1] / "share/sidestep"
+sys.path[:0] = [str(share / "tools"), str(share / "python")]
 try:
     import lcm
 except ImportError:

@@ -11,6 +11,16 @@ import wire
 from errors import reason
 
 
+STOPS = (signal.SIGINT, signal.SIGTERM)
+
+
+def stop(*_):
+    """Ends the recording. Later signals, of which timeout(1) sends two, do not interrupt closing the log."""
+    for number in STOPS:
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
 def record(file, channels, lcm_url):
     """Returns the number of messages written."""
     network, written = wire.connect(lcm_url), 0
@@ -40,8 +50,8 @@ def main():
     parser.add_argument("--channels", nargs="+", default=list(wire.TYPES), metavar="NAME", help="default: %(default)s")
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    for stop in (signal.SIGINT, signal.SIGTERM):  # a shell starts background jobs with SIGINT ignored
-        signal.signal(stop, signal.default_int_handler)
+    for number in STOPS:  # a shell starts background jobs with SIGINT ignored
+        signal.signal(number, stop)
     try:
         open(arguments.log, "ab").close()
     except OSError as error:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import lcm
 
-# Appended, so that pydrake's own modules come first. Installed scripts find the types in their own folder.
+# Appended, so that pydrake's own modules come first. Installed scripts find the types in share/sidestep/python.
 sys.path.append(str(Path(__file__).resolve().parents[2] / "build/lcm/python"))
 from sidestep import (attachments_t, control_t, controller_status_t, joint_command_t, joint_state_t, joint_target_t,
                       named_joints_t, obstacle_t, obstacles_t, target_t)
