@@ -61,6 +61,9 @@ void a_taken_port_is_refused_before_anything_starts(void**) {
 void the_commands_that_make_play_names_run(void**) {
   passes("play_commands");
 }
+void the_example_of_the_readme_sends_target_and_obstacle(void**) {
+  passes("readme_example");
+}
 void messages_that_came_earlier_are_received_without_time_left(void**) {
   passes("late_receiver");
 }
@@ -94,6 +97,7 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(the_example_of_the_readme_sends_target_and_obstacle, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(messages_that_came_earlier_are_received_without_time_left,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,

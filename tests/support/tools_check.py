@@ -342,6 +342,23 @@ def play_commands():
         assert first.startswith(("sending ", "usage: watch.py")), (words, first)
 
 
+def readme_example():
+    """The Python example of README.md sends the target and the obstacle that it shows."""
+    network = runs.private_url()
+    latest = wire.LatestMessages(["TARGET", "OBSTACLES"], network)
+    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
+    assert len(code.splitlines()) == 10, code
+    sender = subprocess.Popen([sys.executable, "-c", code], env=os.environ | {
+        "LCM_DEFAULT_URL": network, "PYTHONPATH": str(ROOT / "build/lcm/python")})
+    deadline = time.monotonic() + 20
+    while not {"TARGET", "OBSTACLES"} <= latest.keys() and time.monotonic() < deadline:
+        latest.receive(0.1)
+    sender.kill()
+    sender.wait()
+    (ball,) = latest["OBSTACLES"].obstacles
+    assert list(latest["TARGET"].position) == [-0.5, -0.3, 0.5] and ball.shape == ball.SPHERE and ball.size[0] == 0.05
+
+
 def late_receiver():
     """Messages that came while nobody received are received even without time left; a flood ends at some time."""
     network = runs.private_url()
@@ -407,7 +424,8 @@ def hostile_bytes():
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              late_receiver, watched_texts, hostile_bytes, goals, moving_pictures)}
+                                              late_receiver, watched_texts, hostile_bytes, goals, moving_pictures,
+                                              readme_example)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
