@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Starts the script in share/sidestep/tools that has the name of this program. The types are in share/sidestep/python."""
+"""Starts the script in share/sidestep/tools that has the name of this program, with the types in ../python."""
 import runpy
 import sys
 from pathlib import Path

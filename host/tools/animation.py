@@ -109,7 +109,8 @@ def frames(both):
     figure.subplots_adjust(left=0.01, right=0.99, bottom=0.17, top=0.84, wspace=0.04)
     title, drawn = figure.suptitle("", fontsize=13), []
     for row in rows_of(both[0]):
-        title.set_text(f"{both[0].scenario['title']}: the tool has to reach the star. {both[0].columns['t_s'][row]:.1f} s")
+        t_s = both[0].columns["t_s"][row]
+        title.set_text(f"{both[0].scenario['title']}: the tool has to reach the star. {t_s:.1f} s")
         for axes, run in zip(panels, both):
             axes.clear()
             draw(axes, run, row, corners)

@@ -49,9 +49,6 @@ void impossible_requests_are_refused_in_one_line(void**) {
 void senders_say_what_they_send(void**) {
   passes("announcements");
 }
-void a_moving_picture_says_what_the_run_did(void**) {
-  passes("moving_pictures");
-}
 void the_error_about_an_unknown_scenario_lists_the_scenarios(void**) {
   passes("unknown_scenario");
 }
@@ -60,9 +57,6 @@ void a_taken_port_is_refused_before_anything_starts(void**) {
 }
 void the_commands_that_make_play_names_run(void**) {
   passes("play_commands");
-}
-void the_example_of_the_readme_sends_target_and_obstacle(void**) {
-  passes("readme_example");
 }
 void messages_that_came_earlier_are_received_without_time_left(void**) {
   passes("late_receiver");
@@ -89,7 +83,6 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
-      cmocka_unit_test_teardown(a_moving_picture_says_what_the_run_did, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(senders_say_what_they_send, sidestep::test::kill_processes),
@@ -97,7 +90,6 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
-      cmocka_unit_test_teardown(the_example_of_the_readme_sends_target_and_obstacle, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(messages_that_came_earlier_are_received_without_time_left,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,

@@ -279,32 +279,6 @@ def refusals():
         assert arm.robot_of(no_robot, argparse.Namespace(**robot)) == tuple(robot.values())
 
 
-def moving_pictures():
-    """A moving picture says what the run did, lasts as long as the run, and carries the numbers that are in it."""
-    import animation  # with matplotlib, which no other check needs
-    import docs
-    import plots
-    from PIL import Image
-    scenario_file = ROOT / "host/scenarios/closing-gap.yaml"
-    with tempfile.TemporaryDirectory() as name:
-        both = runs.in_parallel(runs.lockstep_run, [(scenario_file, law, Path(name) / f"{law}.csv")
-                                                    for law in runs.LAWS])
-        short = [run._replace(columns={key: values[:25] for key, values in run.columns.items()}) for run in both]
-        picture = animation.save(short, Path(name) / "short.gif")
-        assert docs.numbers_of(picture) == plots.numbers(short)
-        image, shown_ms = Image.open(picture), 0
-        for frame in range(image.n_frames):
-            image.seek(frame)
-            shown_ms += image.info["duration"]
-    assert image.n_frames > 2 and abs(shown_ms - 240 - animation.HOLD_S * 1000) <= 80, shown_ms
-    for run, row, texts in ((both[0], 0, ("clearance 141 mm", "target 979 mm away")),
-                            (both[0], int(np.argmin(both[0].columns["clearance_m"])), ("CONTACT, ", "away")),
-                            (both[0], 800, ("CONTACT at ", "away")),
-                            (both[1], 800, ("no contact, least clearance ", "target reached"))):
-        said = [text for text, _ in animation.words(run, row)]
-        assert all(part in text for part, text in zip(texts, said)), (row, said)
-
-
 def unknown_scenario():
     """The error about a scenario that does not exist lists those that do."""
     try:
@@ -340,23 +314,6 @@ def play_commands():
         process.kill()
         process.wait()
         assert first.startswith(("sending ", "usage: watch.py")), (words, first)
-
-
-def readme_example():
-    """The Python example of README.md sends the target and the obstacle that it shows."""
-    network = runs.private_url()
-    latest = wire.LatestMessages(["TARGET", "OBSTACLES"], network)
-    code = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
-    assert len(code.splitlines()) == 10, code
-    sender = subprocess.Popen([sys.executable, "-c", code], env=os.environ | {
-        "LCM_DEFAULT_URL": network, "PYTHONPATH": str(ROOT / "build/lcm/python")})
-    deadline = time.monotonic() + 20
-    while not {"TARGET", "OBSTACLES"} <= latest.keys() and time.monotonic() < deadline:
-        latest.receive(0.1)
-    sender.kill()
-    sender.wait()
-    (ball,) = latest["OBSTACLES"].obstacles
-    assert list(latest["TARGET"].position) == [-0.5, -0.3, 0.5] and ball.shape == ball.SPHERE and ball.size[0] == 0.05
 
 
 def late_receiver():
@@ -424,8 +381,7 @@ def hostile_bytes():
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              late_receiver, watched_texts, hostile_bytes, goals, moving_pictures,
-                                              readme_example)}
+                                              late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -1,0 +1,31 @@
+// What README.md shows.
+
+#include "tests/support/check.h"
+#include "tests/support/process.h"
+
+using sidestep::test::Process;
+
+namespace {
+
+void passes(const char* name) {
+  Process python({"build/venv/bin/python", "tests/support/readme_check.py", name});
+  const int code = python.wait(110.0);
+  check(code == 0, "%s: %s", name, python.output().c_str());
+}
+
+void a_moving_picture_says_what_the_run_did(void**) {
+  passes("moving_picture");
+}
+void the_python_example_sends_target_and_obstacle(void**) {
+  passes("example");
+}
+
+}  // namespace
+
+int main() {
+  const CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(a_moving_picture_says_what_the_run_did, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(the_python_example_sends_target_and_obstacle, sidestep::test::kill_processes),
+  };
+  return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
