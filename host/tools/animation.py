@@ -51,6 +51,8 @@ def words(run, row):
         first = f"CONTACT, {-clearance_m[row] * 1000:.0f} mm deep", RED
     elif touching.size:
         first = f"CONTACT at {t[touching[0]]:.1f} s", RED
+    elif not np.isfinite(clearance_m[row]):
+        first = "no obstacles", "black"
     elif row == len(t) - 1:
         first = f"no contact, least clearance {clearance_m.min() * 1000:.0f} mm", "black"
     else:
