@@ -39,6 +39,9 @@ PACKAGES  = $(eval PACKAGES := $(patsubst -I%,-isystem %,$(filter-out -I/usr/inc
 INCLUDES  = -I. -isystem $(BUILD)/lcm $(PACKAGES) -isystem $(EIQUADPROG_INCLUDE)
 LIBS      = $(eval LIBS := -lassimp -lqhullcpp -lqhull_r -lurdfdom_model -lkdl_parser -lorocos-kdl $(call package,--libs,yaml-cpp,-lyaml-cpp) -lconsole_bridge \
               $(call package,--libs,spdlog fmt,-lspdlog -lfmt) $(call package,--libs,lcm,-llcm))$(LIBS)
+# Only one file includes OMPL.
+OMPL_INCLUDE = $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(call package,--cflags-only-I,ompl,-I/usr/include/ompl-1.5)))
+JUDGE_LIBS = -lfcl -lccd -Wl,--push-state,--as-needed -lompl -Wl,--pop-state
 COMPILE   = $(CXX) $(CPPFLAGS) $(FLAGS) $(WERROR) $(INCLUDES)
 LINK      = $(CXX) $(FLAGS) $(LDFLAGS)
 
@@ -170,7 +173,7 @@ report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-l
 ##@ Checking
 
 lint: $(WIRE) $(READY).lint ## check all sources with clang-format and cppcheck, the programs also with clang-tidy
-	@host/setup/lint $(INCLUDES)
+	@host/setup/lint $(INCLUDES) $(OMPL_INCLUDE)
 
 clean: ## remove what was built; keep the virtual environment, runs and figures
 	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/*.a $(BUILD)/*.jar \
@@ -251,6 +254,8 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) $(BUILD)/.flags $(HEADERS:=.gch) | $(READY)
 $(BUILD)/obj/firmware/base/command_line.o: private FLAGS += -O0
 $(BUILD)/obj/firmware/base/command_line.o: private HEADERS :=
 
+$(BUILD)/obj/host/campaign/furniture/path_planner.o: private INCLUDES += $(OMPL_INCLUDE)
+
 # Only the tests need cmocka.
 $(SUPPORT) $(TESTS:$(BUILD)/%=$(BUILD)/obj/%.o): | $(READY).test
 
@@ -269,7 +274,7 @@ $(BUILD)/sim: $(BUILD)/obj/host/sim/main.o $(BUILD)/libsim.a $(BUILD)/libfirmwar
 	@$(LINK) $^ -lfcl -lccd $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/campaign: $(BUILD)/obj/host/campaign/main.o $(BUILD)/libcampaign.a $(BUILD)/libsim.a $(BUILD)/libfirmware.a
-	@$(LINK) $^ -lfcl -lccd $(LIBS) $(LDLIBS) -o $@
+	@$(LINK) $^ $(JUDGE_LIBS) $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/replay: $(REPLAY) $(BUILD)/libfirmware.a
 	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
@@ -285,11 +290,11 @@ $(SHARED): $(BUILD)/obj/firmware/library/controller.o $(BUILD)/libfirmware.a
 	@$(LINK) -shared -Wl,-soname,$(@F) -Wl,--no-undefined -Wl,--as-needed $^ $(LIBS) $(LDLIBS) -o $@
 
 $(BUILD)/bench: $(BENCH) $(LIBRARIES)
-	@$(LINK) $^ -lfcl -lccd -lcmocka $(LIBS) $(LDLIBS) -o $@
+	@$(LINK) $^ $(JUDGE_LIBS) -lcmocka $(LIBS) $(LDLIBS) -o $@
 
 $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(LIBRARIES) $(PROGRAMS)
 	@mkdir -p $(@D)
-	@$(LINK) $(filter %.o %.a,$^) -lfcl -lccd -lcmocka $(LIBS) $(LDLIBS) -o $@
+	@$(LINK) $(filter %.o %.a,$^) $(JUDGE_LIBS) -lcmocka $(LIBS) $(LDLIBS) -o $@
 
 FUZZ = clang++-14 $(filter-out $(GCC_FLAGS),$(FLAGS)) -fno-sanitize-recover=all
 $(BUILD)/fuzz/obj/%.o: %.cpp $(WIRE)

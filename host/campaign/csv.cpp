@@ -51,16 +51,33 @@ constexpr std::array<Column, 4> kPeopleColumns{{
     {"late_way_out", &TrialMetrics::late_way_out},
 }};
 
-std::vector<Column> columns_of(bool people) {
+/// Only in files with families of furniture.
+constexpr std::array<Column, 4> kFurnitureColumns{{
+    {"final_turn_rad", &TrialMetrics::final_turn_rad},
+    {"mover_clearance_m", &TrialMetrics::mover_clearance_m},
+    {"goal_clearance_m", &TrialMetrics::goal_clearance_m},
+    {"model_goal_clearance_m", &TrialMetrics::model_goal_clearance_m},
+}};
+
+std::vector<Column> columns_of(MoreColumns more) {
   std::vector<Column> columns(kColumns.begin(), kColumns.end());
-  if (people) columns.insert(columns.end(), kPeopleColumns.begin(), kPeopleColumns.end());
+  if (more.people) columns.insert(columns.end(), kPeopleColumns.begin(), kPeopleColumns.end());
+  if (more.furniture) columns.insert(columns.end(), kFurnitureColumns.begin(), kFurnitureColumns.end());
   return columns;
 }
 
-std::string header(bool people) {
+std::string header(MoreColumns more) {
   std::string line = "family,law,seed";
-  for (const Column& column : columns_of(people)) line += fmt::format(",{}", column.name);
+  for (const Column& column : columns_of(more)) line += fmt::format(",{}", column.name);
   return line;
+}
+
+/// The columns with this header; none if there are no such columns.
+std::vector<Column> columns_named(const std::string& line) {
+  for (const bool people : {false, true})
+    for (const bool furniture : {false, true})
+      if (line == header({people, furniture})) return columns_of({people, furniture});
+  return {};
 }
 
 std::vector<std::string> split(const std::string& line) {
@@ -99,10 +116,8 @@ std::string to_line(const Row& row, const std::vector<Column>& columns) {
 std::vector<Row> read_rows(std::istream& stream, const std::string& file) {
   std::string line;
   std::getline(stream, line);
-  const bool people = line == header(true);
-  if (!people && line != header(false))
-    throw std::runtime_error(fmt::format("{}: not a CSV file of campaign trials", file));
-  const std::vector<Column> columns = columns_of(people);
+  const std::vector<Column> columns = columns_named(line);
+  if (columns.empty()) throw std::runtime_error(fmt::format("{}: not a CSV file of campaign trials", file));
   std::vector<Row> rows;
   for (int number = 2; std::getline(stream, line); ++number) {
     try {
@@ -120,14 +135,14 @@ auto key(const Row& row) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(const std::string& file, bool people) : file_(file), people_(people), stream_(file) {
-  stream_ << header(people) << '\n';
+CsvWriter::CsvWriter(const std::string& file, MoreColumns more) : file_(file), more_(more), stream_(file) {
+  stream_ << header(more) << '\n';
   flush();
 }
 
 void CsvWriter::add(const Row& row) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  stream_ << to_line(row, columns_of(people_)) << '\n';
+  stream_ << to_line(row, columns_of(more_)) << '\n';
   flush();
 }
 
@@ -137,8 +152,9 @@ void CsvWriter::flush() {
 }
 
 void write_csv(const std::string& file, const std::vector<Row>& rows) {
-  CsvWriter writer(file,
-                   std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.family->has_people(); }));
+  MoreColumns more;
+  for (const Row& row : rows) more.include(*row.family);
+  CsvWriter writer(file, more);
   for (const Row& row : rows) writer.add(row);
 }
 
@@ -159,7 +175,7 @@ std::vector<Row> read_interrupted_csv(const std::string& file) {
 }
 
 bool same_result(const Row& a, const Row& b) {
-  const std::vector<Column> columns = columns_of(true);
+  const std::vector<Column> columns = columns_of({true, true});
   return std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
     const double x = a.metrics.*column.value, y = b.metrics.*column.value;
     const bool is_cpu = std::string(column.name).rfind("cpu", 0) == 0;

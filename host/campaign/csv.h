@@ -18,13 +18,22 @@ struct Row {
   TrialMetrics metrics;
 };
 
+/// Columns that only files with families of people or of furniture have; other families leave them at nan there.
+struct MoreColumns {
+  bool people = false, furniture = false;
+
+  void include(const Family& family) {
+    people = people || family.has_people();
+    furniture = furniture || family.has_furniture();
+  }
+};
+
 /// Writes trials as they end, a line each. Written numbers are read back as the same bits. All functions throw
 /// std::runtime_error, one line with the file.
 class CsvWriter {
  public:
-  /// Replaces the file by one without rows. people: with the columns of families of people, which other families leave
-  /// at nan.
-  CsvWriter(const std::string& file, bool people);
+  /// Replaces the file by one without rows.
+  CsvWriter(const std::string& file, MoreColumns more);
 
   /// May be called from several threads.
   void add(const Row& row);
@@ -33,12 +42,12 @@ class CsvWriter {
   void flush();
 
   std::string file_;
-  bool people_;
+  MoreColumns more_;
   std::ofstream stream_;
   std::mutex mutex_;
 };
 
-/// The columns of people only if a row is of such a family.
+/// With the columns that the rows' families need.
 void write_csv(const std::string& file, const std::vector<Row>& rows);
 
 std::vector<Row> read_csv(const std::string& file);

@@ -48,6 +48,19 @@ std::vector<Family> make_families() {
   add_people("reach-in", People::kReachIn);
   add_people("gesture", People::kGesture);
   add_people("two-people", People::kTwo);
+  const auto add_furniture = [&all](const std::string& stream, Furniture furniture) {
+    for (const bool mover : {false, true}) {
+      Family family{mover ? stream + "@mover" : stream, stream, 0, mover ? 0.3 : 0.0};
+      family.furniture = furniture;
+      family.mover = mover;
+      all.push_back(family);
+    }
+  };
+  add_furniture("shelf", Furniture::kShelf);
+  add_furniture("box", Furniture::kBox);
+  add_furniture("cage", Furniture::kCage);
+  add_furniture("table", Furniture::kTable);
+  add_furniture("under-table", Furniture::kUnderTable);
   return all;
 }
 
@@ -60,10 +73,10 @@ const std::vector<Family>& families() {
 
 std::vector<const Family*> families_of(const std::string& word) {
   std::vector<const Family*> chosen;
-  std::string known = "all, dodge, people";
+  std::string known = "all, dodge, people, furniture";
   for (const Family& family : families()) {
-    if (word == "all" || word == family.name || (word == "dodge" && family.dodge) ||
-        (word == "people" && family.has_people()))
+    if (word == family.name || (word == "all" && !family.has_furniture()) || (word == "dodge" && family.dodge) ||
+        (word == "people" && family.has_people()) || (word == "furniture" && family.has_furniture()))
       chosen.push_back(&family);
     known += ", " + family.name;
   }

@@ -31,7 +31,15 @@ Judge::Judge(const Scene& scene, const Joints& qd_radps)
   metrics_.duration_s = scene.duration_s();
   if (scene.family->dodge || scene.family->has_people()) return;
   metrics_.witness_arrival_s = witness_arrival_s(scene);
-  metrics_.witness_path_rad = (scene.goal_rad - scene.start_rad).norm();
+  metrics_.witness_path_rad =
+      scene.witness_path.empty() ? (scene.goal_rad - scene.start_rad).norm() : scene.witness_path.length_rad();
+  if (scene.family->has_furniture()) measure_goal_clearance();
+}
+
+void Judge::measure_goal_clearance() {
+  const ArmPose goal = scene_.arm->pose(scene_.goal_rad);
+  metrics_.goal_clearance_m = scene_.arm->solid_clearance(goal, scene_.furniture);
+  metrics_.model_goal_clearance_m = scene_.arm->controller_solid_clearance(goal, scene_.furniture);
 }
 
 bool Judge::is_scored(double t_s, double error_m) {
@@ -52,6 +60,7 @@ void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_
   const double clearance_m = clearance_at(scene_, arm, t_s, std::max(kNear_m, metrics_.clearance_m));
   near_ = clearance_m < kNear_m;
   metrics_.clearance_m = std::min(metrics_.clearance_m, clearance_m);
+  measure_mover(arm, t_s);
   const bool links_near = measure_self_clearance(arm);
   const int own = scene_.arm->contact_checks_per_period();
   const int checks = scene_.family->has_people() ? std::max(own, kPeopleChecks) : own;
@@ -59,8 +68,14 @@ void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_
     const double back = static_cast<double>(i) / checks;
     const ArmPose between = scene_.arm->pose(q_rad + back * (last_rad_ - q_rad));
     metrics_.clearance_m = clearance_at(scene_, between, t_s - back * kPeriod_s, metrics_.clearance_m);
+    measure_mover(between, t_s - back * kPeriod_s);
     measure_self_clearance(between);
   }
+}
+
+void Judge::measure_mover(const ArmPose& arm, double t_s) {
+  if (!scene_.family->mover) return;
+  metrics_.mover_clearance_m = std::fmin(metrics_.mover_clearance_m, sphere_clearance_at(scene_, arm, t_s));
 }
 
 bool Judge::measure_self_clearance(const ArmPose& arm) {
@@ -80,7 +95,8 @@ void Judge::measure_joints(const Joints& q_rad) {
 void Judge::measure_tool_error(const ArmPose& arm, double t_s) {
   const double error_m = (target_at(scene_, t_s).position_m - arm.tool()).norm();
   metrics_.final_error_m = error_m;
-  if (error_m >= kArrived_m) far_until_s_ = t_s;
+  measure_turn(arm);
+  if (error_m >= kArrived_m || turn_rad_ >= kArrived_rad) far_until_s_ = t_s;
   if (!is_scored(t_s, error_m)) return;
   ++scored_;
   if (error_m < kArrived_m) ++on_target_;
@@ -92,6 +108,12 @@ void Judge::measure_tool_error(const ArmPose& arm, double t_s) {
   squares_rad2_ += turn_rad * turn_rad;
 }
 
+void Judge::measure_turn(const ArmPose& arm) {
+  if (!scene_.goal_has_orientation) return;
+  const Eigen::Quaterniond goal = orientation_target_at(scene_, 0.0)->orientation;
+  metrics_.final_turn_rad = turn_rad_ = goal.angularDistance(Eigen::Quaterniond(arm.tool_rotation));
+}
+
 void Judge::record_command(const Joints& velocity_radps, double cpu_s) {
   smoothness_.add(velocity_radps, near_);
   cpu_s_ += cpu_s;
@@ -101,7 +123,8 @@ void Judge::record_command(const Joints& velocity_radps, double cpu_s) {
 
 TrialMetrics Judge::metrics() const {
   TrialMetrics metrics = metrics_;
-  if (metrics.final_error_m < kArrived_m) metrics.arrival_s = far_until_s_ < 0.0 ? 0.0 : far_until_s_ + kPeriod_s;
+  if (metrics.final_error_m < kArrived_m && turn_rad_ < kArrived_rad)
+    metrics.arrival_s = far_until_s_ < 0.0 ? 0.0 : far_until_s_ + kPeriod_s;
   if (scored_ > 0) metrics.error_rms_m = std::sqrt(squares_m2_ / scored_);
   if (scored_ > 0 && scene_.family->chase) metrics.on_target_share = static_cast<double>(on_target_) / scored_;
   if (scored_ > 0 && (scene_.family->dodge || scene_.family->full_pose))

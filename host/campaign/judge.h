@@ -25,10 +25,14 @@ class Judge {
   /// Least clearances to obstacles and between links at this period and, where one of them is small, at instants
   /// between the last period and this one.
   void measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s);
+  void measure_mover(const ArmPose& arm, double t_s);
   /// Whether links are near each other.
   bool measure_self_clearance(const ArmPose& arm);
   void measure_joints(const Joints& q_rad);
   void measure_tool_error(const ArmPose& arm, double t_s);
+  /// Only among furniture, whose goal rests.
+  void measure_turn(const ArmPose& arm);
+  void measure_goal_clearance();
   /// Whether the tool error at t_s is part of its root mean square.
   bool is_scored(double t_s, double error_m);
 
@@ -38,6 +42,7 @@ class Judge {
   Smoothness smoothness_;
   Matrix3 start_rotation_;
   Joints last_rad_;
+  double turn_rad_ = 0.0;  ///< orientation error of the tool, if the goal has an orientation
   bool near_ = false;
   bool reached_ = false;
   double far_until_s_ = -1.0;  ///< the last time at which the tool error was kArrived_m or more

@@ -53,6 +53,10 @@ class JudgeArm {
   virtual double clearance(const ArmPose& pose, const std::vector<Capsule>& capsules,
                            double within_m = sim::kNothingNear) const = 0;
 
+  /// The same for the nearest of several boxes and cylinders.
+  virtual double solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids,
+                                 double within_m = sim::kNothingNear) const = 0;
+
   /// Capsules that enclose the links, fixed ones included. Much cheaper than pose() and clearance().
   virtual std::vector<Capsule> enclosing_capsules(const Joints& q_rad) const = 0;
 
@@ -65,6 +69,14 @@ class JudgeArm {
   virtual double controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const {
     return clearance(pose, center_m, radius_m);
   }
+
+  /// The same for the nearest of several boxes and cylinders.
+  virtual double controller_solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids) const {
+    return solid_clearance(pose, solids);
+  }
+
+  /// Whether a goal among furniture has an orientation, or is only a position of the tool.
+  virtual bool goal_has_orientation() const { return true; }
 
   /// Whether the links keep the controller's self-clearance from each other.
   virtual bool keeps_clear_of_itself(const ArmPose&) const { return true; }

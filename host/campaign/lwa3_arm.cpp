@@ -7,6 +7,7 @@
 #include "host/campaign/config_name.h"
 #include "host/campaign/family.h"
 #include "host/campaign/segment.h"
+#include "host/campaign/solids.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -66,6 +67,20 @@ double Lwa3Arm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsu
     for (size_t i = 0; i < 4; ++i) {
       const double axes_m = segment_distance(pose.corners[i], pose.corners[i + 1], capsule.start, capsule.end);
       least_m = std::min(least_m, axes_m - kLinkRadius_m - capsule.radius_m);
+    }
+  }
+  return least_m;
+}
+
+double Lwa3Arm::solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids, double within_m) const {
+  double least_m = within_m;
+  for (size_t i = 0; i + 1 < pose.corners.size(); ++i) {
+    const sim::Obstacle link = capsule_obstacle({pose.corners[i], pose.corners[i + 1], kLinkRadius_m});
+    const Eigen::Isometry3d base_from_link = link.motion.base_from_body();
+    for (const sim::Obstacle& solid : solids) {
+      if (sim::lower_bound_m(link.solid, base_from_link, solid) >= least_m) continue;
+      least_m = std::min(
+          least_m, sim::signed_distance_m(solid.solid, solid.motion.base_from_body(), link.solid, base_from_link));
     }
   }
   return least_m;

@@ -13,9 +13,12 @@ class Lwa3Arm : public JudgeArm {
                    double within_m = sim::kNothingNear) const override;
   double clearance(const ArmPose& pose, const std::vector<Capsule>& capsules,
                    double within_m = sim::kNothingNear) const override;
+  double solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids,
+                         double within_m = sim::kNothingNear) const override;
   std::vector<Capsule> enclosing_capsules(const Joints& q_rad) const override;
   /// Of the capsules that share no corner.
   double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const override;
+  bool goal_has_orientation() const override { return false; }
   Limits limits(const Family& family) const override;
   Limits range() const override;
   ArmSource source(const Family& family) const override;

@@ -40,8 +40,9 @@ struct Options {
 
 void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
-                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, people, one of their "
-                 "variants, or all")
+                 "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, people, furniture, "
+                 "one of their variants (shelf, box, cage, table, under-table and each with @mover of the last), or "
+                 "all but furniture")
       .show_default();
   app.add_option("--count", options.count, "scenes of each family, runs of a search")
       .show_default()
@@ -141,9 +142,9 @@ std::vector<Row> run_and_record(const std::vector<Task>& tasks, const TestedCont
     return run(tasks, tested, options.jobs, options.quiet, interrupted);
   }
   auto [rows, rest] = options.resume ? resume(options.csv, tasks, tested) : Resumed{{}, tasks};
-  const bool people =
-      std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.family->has_people(); });
-  CsvWriter writer(options.csv, people);  // fails before the trials if the file cannot be written
+  MoreColumns more_columns;
+  for (const Task& task : tasks) more_columns.include(*task.family);
+  CsvWriter writer(options.csv, more_columns);  // fails before the trials if the file cannot be written
   for (const Row& row : rows) writer.add(row);
   const std::vector<Row> more =
       run(rest, tested, options.jobs, options.quiet, interrupted, [&writer](const Row& row) { writer.add(row); });

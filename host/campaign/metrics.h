@@ -29,6 +29,12 @@ struct TrialMetrics {
   double cpu_worst_s = kNone;
   double self_clearance_m = std::numeric_limits<double>::infinity();  ///< least between links, if it is below 0.05 m
 
+  // Only among furniture:
+  double final_turn_rad = kNone;          ///< orientation error at the end, if the goal has an orientation
+  double mover_clearance_m = kNone;       ///< least clearance to the mover
+  double goal_clearance_m = kNone;        ///< of the witness at its goal, to the furniture
+  double model_goal_clearance_m = kNone;  ///< the same in the controller's model, which is never larger
+
   // Only among people:
   double rest_clearance_m = kNone;  ///< least clearance of an arm that stays at the start
   double closing_mps = kNone;       ///< contact: largest speed at which the arm itself made the clearance smaller

@@ -9,12 +9,14 @@ double arrived_within_m(const Family& family) {
 }
 
 Joints witness_rad(const Scene& scene, double t_s) {
+  if (!scene.witness_path.empty()) return scene.witness_path.position_rad(t_s);
   if (t_s >= scene.witness_s) return scene.goal_rad;
   const double u = std::max(0.0, t_s / scene.witness_s);
   return scene.start_rad + (3.0 - 2.0 * u) * u * u * (scene.goal_rad - scene.start_rad);
 }
 
 Joints witness_radps(const Scene& scene, double t_s) {
+  if (!scene.witness_path.empty()) return scene.witness_path.velocity_radps(t_s);
   if (t_s >= scene.witness_s || t_s <= 0.0) return Joints::Zero(scene.goal_rad.size());
   const double u = t_s / scene.witness_s;
   return 6.0 * u * (1.0 - u) / scene.witness_s * (scene.goal_rad - scene.start_rad);
@@ -32,6 +34,8 @@ PointMotion target_at(const Scene& scene, double t_s) {
 
 std::optional<OrientationTarget> orientation_target_at(const Scene& scene, double t_s) {
   const Family& family = *scene.family;
+  if (scene.goal_has_orientation)
+    return OrientationTarget{Eigen::Quaterniond(scene.arm->pose(scene.goal_rad).tool_rotation), Vector3::Zero()};
   if (!family.full_pose && !family.hold_orientation) return std::nullopt;
   const ArmPose witness = scene.arm->pose(witness_rad(scene, t_s));
   return OrientationTarget{Eigen::Quaterniond(witness.tool_rotation),
@@ -45,10 +49,16 @@ std::vector<Capsule> capsules_at(const Scene& scene, double t_s) {
   return capsules;
 }
 
-double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
+double sphere_clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
   double least_m = within_m;
   for (const SpherePath& sphere : scene.spheres)
     least_m = scene.arm->clearance(pose, sphere.at(t_s).position_m, kSphereRadius_m, least_m);
+  return least_m;
+}
+
+double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
+  double least_m = sphere_clearance_at(scene, pose, t_s, within_m);
+  if (!scene.furniture.empty()) least_m = scene.arm->solid_clearance(pose, scene.furniture, least_m);
   return scene.capsules.empty() ? least_m : scene.arm->clearance(pose, capsules_at(scene, t_s), least_m);
 }
 

@@ -6,6 +6,7 @@
 
 #include "host/campaign/capsule_path.h"
 #include "host/campaign/family.h"
+#include "host/campaign/furniture/timed_path.h"
 #include "host/campaign/judge_arm.h"
 #include "host/campaign/sphere_path.h"
 
@@ -15,6 +16,7 @@ constexpr double kPeriod_s = 0.01;
 constexpr int64_t kPeriod_us = 10'000;
 constexpr double kSphereRadius_m = 0.05;
 constexpr double kArrived_m = 0.01;                ///< the arm has arrived if the tool error is below this
+constexpr double kArrived_rad = 0.05;              ///< the same of the orientation, where the goal has one
 constexpr double kReturned_m = 0.005;              ///< the same after a dodge
 constexpr double kPlantLag_s = 0.030;              ///< family real: first-order lag of the joint velocity
 constexpr double kPlantAcceleration_radps2 = 1e6;  ///< family real: practically no limit
@@ -26,11 +28,14 @@ struct Scene {
   const JudgeArm* arm;
   int periods;
   Joints start_rad;
-  Joints goal_rad;   ///< end of the witness; in a dodge the same as the start
-  double witness_s;  ///< duration of the witness's motion; 0 in a dodge and among people, which have none
+  Joints goal_rad;         ///< end of the witness; in a dodge the same as the start
+  double witness_s;        ///< duration of the witness's motion; 0 in a dodge and among people, which have none
+  TimedPath witness_path;  ///< furniture: the witness; else it is straight, see witness_rad()
   std::vector<SpherePath> spheres;
-  double crossing_s = 0.0;            ///< dodge: the time at which the spheres reach the arm's start configuration
-  std::vector<CapsulePath> capsules;  ///< of persons
+  double crossing_s = 0.0;               ///< dodge: the time at which the spheres reach the arm's start configuration
+  std::vector<CapsulePath> capsules;     ///< of persons
+  std::vector<sim::Obstacle> furniture;  ///< boxes and cylinders at rest
+  bool goal_has_orientation = false;     ///< furniture: the goal is also the tool's orientation at goal_rad
   /// People: the target is first the tool's position at the goal, then changes moves - 1 times between those at start
   /// and goal, each time after this duration.
   double move_s = 0.0;
@@ -43,7 +48,7 @@ struct Scene {
 double arrived_within_m(const Family& family);
 
 /// The witness: a joint path that solves the scene. It moves on the straight line from start to goal in joint space
-/// with the profile 3u^2 - 2u^3, then rests.
+/// with the profile 3u^2 - 2u^3, or on witness_path; then it rests.
 Joints witness_rad(const Scene& scene, double t_s);
 Joints witness_radps(const Scene& scene, double t_s);
 
@@ -64,6 +69,9 @@ std::vector<Capsule> capsules_at(const Scene& scene, double t_s);
 
 /// Least clearance between the arm and all obstacles at time t. Returns within_m if the clearance is not less.
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
+
+/// The same to the spheres alone.
+double sphere_clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m = sim::kNothingNear);
 
 /// Dodge: the pass, the time in which the spheres are within kPassReach_m of their crossing points. The tool's
 /// deviation is measured over the pass.

@@ -19,6 +19,10 @@ std::string list(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return '[' + text + ']';
 }
 
+std::string quaternion(const Eigen::Quaterniond& q) {
+  return list(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+}
+
 /// Position and velocity at t = 0 and, unless straight, waypoints [t, position, velocity] until the end.
 std::string motion(const Scene& scene, bool straight, const std::function<PointMotion(double)>& at) {
   const PointMotion start = at(0.0);
@@ -36,11 +40,18 @@ std::string motion(const Scene& scene, bool straight, const std::function<PointM
 
 std::string target_yaml(const Scene& scene) {
   std::string text = motion(scene, !scene.family->chase, [&](double t_s) { return target_at(scene, t_s); });
-  if (scene.family->hold_orientation) {
-    const Eigen::Quaterniond hold(scene.arm->pose(scene.start_rad).tool_rotation);
-    text += ", quaternion: " + list(Eigen::Vector4d(hold.w(), hold.x(), hold.y(), hold.z()));
-  }
+  if (scene.family->hold_orientation || scene.goal_has_orientation)
+    text += ", quaternion: " + quaternion(orientation_target_at(scene, 0.0)->orientation);
   return '{' + text + '}';
+}
+
+std::string solid_yaml(const sim::Obstacle& solid, size_t id) {
+  const Vector3& size_m = solid.solid.size_m;
+  const std::string shape = solid.solid.shape == sim::Shape::kBox
+                                ? fmt::format("shape: box, edges_m: {}", list(size_m))
+                                : fmt::format("shape: cylinder, radius_m: {}, height_m: {}", size_m.x(), size_m.y());
+  return fmt::format("  - {{id: {}, {}, position_m: {}, velocity_mps: [0, 0, 0], quaternion: {}}}\n", id, shape,
+                     list(solid.motion.position_m), quaternion(solid.motion.orientation));
 }
 
 std::string obstacles_yaml(const Scene& scene) {
@@ -50,6 +61,8 @@ std::string obstacles_yaml(const Scene& scene) {
     text += fmt::format("  - {{id: {}, shape: sphere, radius_m: {}, {}}}\n", i, kSphereRadius_m,
                         motion(scene, sphere.straight(), [&](double t_s) { return sphere.at(t_s); }));
   }
+  for (const sim::Obstacle& solid : scene.furniture)
+    text += solid_yaml(solid, scene.spheres.size() + static_cast<size_t>(solid.id));
   return text;
 }
 

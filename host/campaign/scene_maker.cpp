@@ -8,9 +8,11 @@
 #include <stdexcept>
 
 #include "host/campaign/dodge_maker.h"
+#include "host/campaign/furniture/furniture_maker.h"
 #include "host/campaign/people/people_maker.h"
 #include "host/campaign/plain_tracking.h"
 #include "host/campaign/random.h"
+#include "host/campaign/witness_fit.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -94,18 +96,6 @@ SpherePath draw_sphere(Random& random, const Scene& scene) {
   return path;
 }
 
-/// Whether the sphere comes within kWitnessNear_m of the witness, but never closer than kWitnessClearance_m.
-bool fits_witness(const JudgeArm& arm, const std::vector<ArmPose>& witness, const SpherePath& sphere) {
-  double least_m = std::numeric_limits<double>::infinity();
-  for (size_t k = 0; k < witness.size(); ++k) {
-    const Vector3 center_m = sphere.at(static_cast<double>(k) * kPeriod_s).position_m;
-    least_m = std::min(least_m, arm.controller_clearance(witness[k], center_m, kSphereRadius_m));
-    if (least_m < kWitnessClearance_m) return false;
-    if (arm.clearance(witness[k], center_m, kSphereRadius_m, kWitnessClearance_m) < kWitnessClearance_m) return false;
-  }
-  return least_m <= kWitnessNear_m;
-}
-
 bool draw_spheres(Random& random, Scene& scene) {
   scene.spheres.clear();
   const int most = scene.family->most_obstacles;
@@ -127,10 +117,17 @@ bool try_people(Random& random, Scene& scene) {
 }
 
 bool try_scene(Random& random, Scene& scene) {
+  if (scene.family->has_furniture()) return make_furniture(random, scene);
   if (scene.family->has_people()) return try_people(random, scene);
   if (scene.family->dodge) return make_dodge(random, scene, draw_posture(random, *scene.arm, 0.7, kNoFloor));
   draw_witness(random, scene);
   return draw_spheres(random, scene) && (scene.spheres.empty() || plain_tracking_hits(scene));
+}
+
+const char* lacks(const Family& family) {
+  if (family.has_people()) return "persons touch an arm that does not evade";
+  if (family.has_furniture()) return "path was found among furniture that blocks plain tracking";
+  return "spheres keep clear of the witness and block plain tracking";
 }
 
 }  // namespace
@@ -143,10 +140,8 @@ Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
   Random random(family.stream, seed);
   for (int attempt = 0; attempt < kMostAttempts; ++attempt)
     if (try_scene(random, scene)) return scene;
-  throw std::runtime_error(fmt::format("{}: no scene in {} attempts: no {}", family.name, kMostAttempts,
-                                       family.has_people()
-                                           ? "persons touch an arm that does not evade"
-                                           : "spheres keep clear of the witness and block plain tracking"));
+  throw std::runtime_error(
+      fmt::format("{}: no scene in {} attempts: no {}", family.name, kMostAttempts, lacks(family)));
 }
 
 }  // namespace sidestep::campaign

@@ -1,5 +1,7 @@
 #include "host/campaign/sensing.h"
 
+#include "host/campaign/solids.h"
+
 namespace sidestep::campaign {
 namespace {
 
@@ -38,6 +40,7 @@ void Sensing::report_exactly(int64_t now_us, double t_s) {
   newest_.obstacles.clear();
   for (const SpherePath& sphere : scene_.spheres) newest_.obstacles.push_back(moving_sphere(sphere.at(t_s)));
   for (const CapsulePath& capsule : scene_.capsules) newest_.obstacles.push_back(person_obstacle(capsule.at(t_s)));
+  for (const sim::Obstacle& solid : scene_.furniture) newest_.obstacles.push_back(reported(solid));
 }
 
 void Sensing::capture(int64_t at_us, double t_s) {

@@ -27,7 +27,8 @@ bool touched_itself(const Row& row) {
   return row.metrics.self_clearance_m <= 0.0;
 }
 bool arrived(const Row& row) {
-  return row.metrics.final_error_m < arrived_within_m(*row.family);
+  const bool turned_away = row.metrics.final_turn_rad >= kArrived_rad;  // false where there is no orientation
+  return row.metrics.final_error_m < arrived_within_m(*row.family) && !turned_away;
 }
 bool succeeded(const Row& row) {
   return !touched(row) && arrived(row);
@@ -51,6 +52,10 @@ bool touched_deeper_than_at_rest(const Row& row) {
 }
 bool touched_at_rest(const Row& row) {
   return row.metrics.rest_clearance_m < 0.0;
+}
+
+bool touched_mover(const Row& row) {
+  return row.metrics.mover_clearance_m < 0.0;
 }
 
 double percent(const Sample& sample, bool (*holds)(const Row&)) {

@@ -14,7 +14,8 @@ std::vector<Sample> samples(const std::vector<Row>& rows);
 bool touched(const Row& row);
 /// Links of the arm touched each other.
 bool touched_itself(const Row& row);
-/// The tool is at the target at the end: within 10 mm, after a dodge within 5 mm.
+/// The tool is at the target at the end: within 10 mm, after a dodge within 5 mm; among furniture also within 0.05 rad
+/// where the goal has an orientation.
 bool arrived(const Row& row);
 /// The arm arrived without contact.
 bool succeeded(const Row& row);
@@ -29,6 +30,9 @@ bool touched_avoidably_late(const Row& row);
 bool touched_deeper_than_at_rest(const Row& row);
 /// An arm that stays at the start is touched.
 bool touched_at_rest(const Row& row);
+
+/// Among furniture: the arm touched the mover.
+bool touched_mover(const Row& row);
 
 /// Share of the trials that satisfy a condition, %.
 double percent(const Sample& sample, bool (*holds)(const Row&));

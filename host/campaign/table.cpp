@@ -108,6 +108,21 @@ const Columns& people_columns() {
   return columns;
 }
 
+const Columns& furniture_columns() {
+  static const Columns columns{
+      interval_column("success", succeeded),
+      interval_column("contact", touched),
+      {"of links", "%", 1, share(touched_itself)},
+      {"of mover", "%", 1, share(touched_mover)},
+      {"arrival", "%", 1, share(arrived)},
+      {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
+      {"arrival", "s", 2, average_success(&TrialMetrics::arrival_s)},
+      {"arrival", "/ witness", 2, over_witness(&TrialMetrics::arrival_s, &TrialMetrics::witness_arrival_s)},
+      {"joint path", "/ witness", 2, over_witness(&TrialMetrics::path_rad, &TrialMetrics::witness_path_rad)},
+  };
+  return columns;
+}
+
 const Columns& cpu_columns() {
   static const Columns columns{
       {"hot step", "mean, us", 1, average(&TrialMetrics::cpu_mean_s, kMicro)},
@@ -183,17 +198,19 @@ std::string tables(const std::vector<Row>& rows, bool with_cpu) {
     if (with_cpu) columns.insert(columns.end(), cpu_columns().begin(), cpu_columns().end());
     return columns;
   };
-  std::vector<Sample> reaches, full_poses, dodges, people;
+  std::vector<Sample> reaches, full_poses, dodges, people, furniture;
   for (Sample& sample : samples(rows)) {
     const Family& family = *sample.front().family;
-    (family.dodge          ? dodges
-     : family.has_people() ? people
-     : family.full_pose    ? full_poses
-                           : reaches)
+    (family.dodge             ? dodges
+     : family.has_people()    ? people
+     : family.has_furniture() ? furniture
+     : family.full_pose       ? full_poses
+                              : reaches)
         .push_back(std::move(sample));
   }
   return table(reaches, all(reach_columns())) + table(full_poses, all(full_pose_columns())) +
-         table(dodges, all(dodge_columns())) + table(people, all(people_columns()));
+         table(dodges, all(dodge_columns())) + table(people, all(people_columns())) +
+         table(furniture, all(furniture_columns()));
 }
 
 std::string smoothness_table(const std::vector<Row>& rows) {

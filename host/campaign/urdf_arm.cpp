@@ -5,6 +5,7 @@
 
 #include "firmware/model/kinematics.h"
 #include "firmware/model/link_proximity.h"
+#include "host/campaign/solids.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -55,16 +56,12 @@ double UrdfArm::clearance(const ArmPose& pose, const Vector3& center_m, double r
 double UrdfArm::clearance(const ArmPose& pose, const std::vector<Capsule>& capsules, double within_m) const {
   std::vector<sim::Obstacle> obstacles;
   obstacles.reserve(capsules.size());
-  for (const Capsule& capsule : capsules) {
-    const Vector3 axis_m = capsule.end - capsule.start;
-    sim::Obstacle obstacle;
-    obstacle.solid.shape = sim::Shape::kCapsule;
-    obstacle.solid.size_m = {capsule.radius_m, axis_m.norm(), 0.0};
-    obstacle.motion.position_m = capsule.centre();
-    obstacle.motion.orientation = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis_m);
-    obstacles.push_back(obstacle);
-  }
-  return std::min(within_m, pose.truth->nearest(obstacles, within_m).clearance_m);
+  for (const Capsule& capsule : capsules) obstacles.push_back(capsule_obstacle(capsule));
+  return solid_clearance(pose, obstacles, within_m);
+}
+
+double UrdfArm::solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids, double within_m) const {
+  return std::min(within_m, pose.truth->nearest(solids, within_m).clearance_m);
 }
 
 std::vector<Capsule> UrdfArm::enclosing_capsules(const Joints& q_rad) const {
@@ -87,6 +84,19 @@ double UrdfArm::controller_clearance(const ArmPose& pose, const Vector3& center_
     const Vector3 away = capsule.centre() - center_m;
     if (away.norm() - capsule.extent_m() - radius_m >= least_m) continue;
     least_m = std::min(least_m, gap_between(solid_of(pose.links, shape), sphere, away, least_m).distance_m);
+  }
+  return least_m;
+}
+
+double UrdfArm::controller_solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids) const {
+  double least_m = sim::kNothingNear;
+  for (const sim::Obstacle& solid : solids) {
+    const Obstacle obstacle = reported(solid);
+    for (const LinkShape& shape : model_.arm.shapes) {
+      const Vector3 away = transformed(pose.links, shape).centre() - obstacle.capsule.centre();
+      const SolidGap gap = gap_between(solid_of(pose.links, shape), solid_of(obstacle), away, least_m);
+      least_m = std::min(least_m, gap.distance_m);
+    }
   }
   return least_m;
 }

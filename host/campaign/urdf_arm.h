@@ -17,9 +17,12 @@ class UrdfArm : public JudgeArm {
                    double within_m = sim::kNothingNear) const override;
   double clearance(const ArmPose& pose, const std::vector<Capsule>& capsules,
                    double within_m = sim::kNothingNear) const override;
+  double solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids,
+                         double within_m = sim::kNothingNear) const override;
   std::vector<Capsule> enclosing_capsules(const Joints& q_rad) const override;
   double self_clearance(const ArmPose& pose, double within_m = sim::kNothingNear) const override;
   double controller_clearance(const ArmPose& pose, const Vector3& center_m, double radius_m) const override;
+  double controller_solid_clearance(const ArmPose& pose, const std::vector<sim::Obstacle>& solids) const override;
   bool keeps_clear_of_itself(const ArmPose& pose) const override;
   Limits limits(const Family& family) const override;
   Limits range() const override;

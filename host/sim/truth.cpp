@@ -22,18 +22,27 @@ double distance_to_axis_m(const ArmPart& part, const Eigen::Vector3d& point_m) {
   return (offset_m - along * half_m).norm();
 }
 
-// Lower bound of the distance between the surfaces: from the bounding box of a mesh, else from bounding spheres.
-double lower_bound_m(const ArmPart& part, const Obstacle& obstacle) {
-  const Eigen::Vector3d offset_m = obstacle.motion.position_m - part.base_from_part.translation();
-  double bound_m = offset_m.norm() - bounding_radius_m(part.solid);
-  if (part.solid.shape == Shape::kMesh) {
-    const Eigen::Vector3d in_part_m = part.base_from_part.linear().transpose() * offset_m;
-    bound_m = (in_part_m.cwiseAbs() - 0.5 * part.solid.size_m).cwiseMax(0.0).norm();
-  }
-  return bound_m - bounding_radius_m(obstacle.solid);
+// Distance from a point to a box around the origin of a frame, 0 inside.
+double distance_to_box_m(const Eigen::Vector3d& point_m, const Eigen::Quaterniond& base_from_box,
+                         const Eigen::Vector3d& edges_m) {
+  return ((base_from_box.conjugate() * point_m).cwiseAbs() - 0.5 * edges_m).cwiseMax(0.0).norm();
 }
 
 }  // namespace
+
+// From the bounding box of a mesh and a box, else from bounding spheres.
+double lower_bound_m(const Solid& solid, const Eigen::Isometry3d& base_from_solid, const Obstacle& obstacle) {
+  const Eigen::Vector3d offset_m = obstacle.motion.position_m - base_from_solid.translation();
+  double bound_m = offset_m.norm() - bounding_radius_m(solid);
+  if (solid.shape == Shape::kMesh) {
+    const Eigen::Vector3d in_solid_m = base_from_solid.linear().transpose() * offset_m;
+    bound_m = (in_solid_m.cwiseAbs() - 0.5 * solid.size_m).cwiseMax(0.0).norm();
+  }
+  bound_m -= bounding_radius_m(obstacle.solid);
+  if (obstacle.solid.shape != Shape::kBox) return bound_m;
+  const double to_box_m = distance_to_box_m(offset_m, obstacle.motion.orientation, obstacle.solid.size_m);
+  return std::max(bound_m, to_box_m - bounding_radius_m(solid));
+}
 
 Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, int last_body, double within_m) const {
   Nearest best;
@@ -43,15 +52,15 @@ Nearest Truth::nearest(const std::vector<Obstacle>& obstacles, int last_body, do
     candidates.clear();
     for (const ArmPart& part : arm_.parts()) {
       if (part.body > last_body) continue;
-      const double bound_m = lower_bound_m(part, obstacles[i]);
+      const double bound_m = lower_bound_m(part.solid, part.base_from_part, obstacles[i]);
       if (bound_m < best.clearance_m) candidates.emplace_back(bound_m, &part);
     }
     std::sort(candidates.begin(), candidates.end());
     const Eigen::Isometry3d base_from_obstacle = obstacles[i].motion.base_from_body();
     for (const auto& [bound_m, part] : candidates) {
       if (bound_m >= best.clearance_m) break;
-      const double distance_m =
-          signed_distance_m(part->solid, part->base_from_part, obstacles[i].solid, base_from_obstacle);
+      const double distance_m = signed_distance_m(part->solid, part->base_from_part, obstacles[i].solid,
+                                                  base_from_obstacle, best.clearance_m);
       if (distance_m < best.clearance_m) best = {distance_m, static_cast<int>(i), part->link};
     }
   }

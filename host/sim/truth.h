@@ -20,6 +20,9 @@ struct Nearest {
   std::string link;
 };
 
+/// Lower bound of the distance between the surfaces of a solid and an obstacle, m; cheap.
+double lower_bound_m(const Solid& solid, const Eigen::Isometry3d& base_from_solid, const Obstacle& obstacle);
+
 /// Distances between the arm, as its URDF describes it, and obstacles, and between its links. Independent of the
 /// controller's kinematics, distances and pairs of links, which it checks. Copies share what does not change.
 class Truth {

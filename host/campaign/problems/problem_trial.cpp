@@ -8,6 +8,7 @@
 #include "firmware/base/fail.h"
 #include "host/campaign/parallel.h"
 #include "host/campaign/progress.h"
+#include "host/campaign/solids.h"
 #include "host/campaign/trial_controller.h"
 #include "host/sim/plant.h"
 
@@ -18,14 +19,6 @@ constexpr double kWithin_m = 0.01;
 constexpr double kNear_m = 0.02;  // nearer than this, the way between two cycles is looked at
 constexpr int kChecksPerPeriod = 5;
 constexpr int64_t kLatestStart_us = 6'000'000;
-
-Obstacle reported(const sim::Obstacle& object) {
-  const Vector3 &position = object.motion.position_m, &size = object.solid.size_m;
-  const Matrix3 rotation = object.motion.orientation.toRotationMatrix();
-  if (object.solid.shape == sim::Shape::kBox) return box_obstacle(position, rotation, size);
-  if (object.solid.shape == sim::Shape::kCylinder) return cylinder_obstacle(position, rotation, size.x(), size.y());
-  return sphere_obstacle(position, size.x());
-}
 
 /// The controller's model with the joints outside the chain at the problem's positions, as far as the arm has them.
 Model model_of(const Problem& problem, const Config& config) {

@@ -1,0 +1,107 @@
+#include "host/campaign/furniture/furniture_maker.h"
+
+#include <cmath>
+
+#include "host/campaign/furniture/mover.h"
+#include "host/campaign/furniture/path_planner.h"
+#include "host/campaign/furniture/pieces.h"
+#include "host/campaign/plain_tracking.h"
+
+namespace sidestep::campaign {
+namespace {
+
+constexpr double kShare = 0.8;                         // of the limits, for the witness
+constexpr double kRest_s = 5.0, kLongest_s = 15.0;     // time after the witness's motion; longest scene
+constexpr double kLinksApart_m = 0.005;                // by the judge's surfaces, where the controller asks for less
+constexpr int kMostGoals = 20'000, kMostStarts = 100;  // draws of a posture
+constexpr int kMostPieces = 10;                        // draws of furniture around a goal
+constexpr int kMostChecks = 20'000;                    // of the planner
+constexpr int kChecksPerPeriod = 2;                    // of the finished witness
+
+Joints draw_joints(Random& random, const Limits& range, double share) {
+  Joints q_rad(range.lower_rad.size());
+  for (int i = 0; i < q_rad.size(); ++i) {
+    const double middle_rad = 0.5 * (range.lower_rad[i] + range.upper_rad[i]);
+    q_rad[i] = middle_rad + share * (random.uniform(range.lower_rad[i], range.upper_rad[i]) - middle_rad);
+  }
+  return q_rad;
+}
+
+bool lies_in(const GoalRegion& region, const ArmPose& pose) {
+  const Vector3 &tool_m = pose.tool(), pointing = (tool_m - pose.wrist()).normalized();
+  const double away_m = tool_m.head<2>().norm();
+  if (away_m < region.nearest_m || away_m > region.farthest_m) return false;
+  if (tool_m.z() < region.lowest_m || tool_m.z() > region.highest_m) return false;
+  return pointing.z() <= region.most_upward &&
+         pointing.head<2>().dot(tool_m.head<2>()) >= region.least_outward * away_m;
+}
+
+bool links_keep_apart(const JudgeArm& arm, const ArmPose& pose) {
+  return arm.keeps_clear_of_itself(pose) && arm.self_clearance(pose, kLinksApart_m) >= kLinksApart_m;
+}
+
+/// Draws a goal posture and furniture around its tool.
+bool draw_goal(Random& random, Scene& scene) {
+  const JudgeArm& arm = *scene.arm;
+  const GoalRegion region = goal_region(scene.family->furniture);
+  for (int draw = 0; draw < kMostGoals; ++draw) {
+    scene.goal_rad = draw_joints(random, arm.range(), 0.9);
+    const ArmPose pose = arm.pose(scene.goal_rad);
+    if (!lies_in(region, pose) || !links_keep_apart(arm, pose)) continue;
+    for (int piece = 0; piece < kMostPieces; ++piece) {
+      scene.furniture = draw_furniture(random, scene.family->furniture, pose.tool());
+      if (keeps_clear(scene, scene.goal_rad)) return true;
+    }
+  }
+  return false;
+}
+
+bool draw_start(Random& random, Scene& scene) {
+  for (int draw = 0; draw < kMostStarts; ++draw) {
+    scene.start_rad = draw_joints(random, scene.arm->range(), 0.7);
+    if (scene.arm->pose(scene.start_rad).tool().z() > 0.15 && keeps_clear(scene, scene.start_rad)) return true;
+  }
+  return false;
+}
+
+/// Whether the timed witness keeps clear everywhere; the planner has looked at coarser steps.
+bool witness_keeps_clear(const Scene& scene) {
+  const double step_s = kPeriod_s / kChecksPerPeriod;
+  for (int k = 0; k * step_s < scene.witness_s + step_s; ++k)
+    if (!keeps_clear(scene, scene.witness_path.position_rad(k * step_s))) return false;
+  return true;
+}
+
+bool plan_witness(Random& random, Scene& scene) {
+  const PlanningProblem problem{scene.start_rad,
+                                scene.goal_rad,
+                                scene.arm->range(),
+                                [&scene](const Joints& q_rad) { return keeps_clear(scene, q_rad); },
+                                static_cast<uint32_t>(random.integer(1, 1'000'000'000)),
+                                kMostChecks};
+  std::vector<Joints> knots_rad = plan_path(problem);
+  if (knots_rad.empty()) return false;
+  scene.witness_path = TimedPath(std::move(knots_rad), scene.arm->limits(*scene.family), kShare);
+  scene.witness_s = scene.witness_path.duration_s();
+  scene.periods = static_cast<int>(std::ceil((scene.witness_s + kRest_s) / kPeriod_s));
+  return scene.duration_s() <= kLongest_s && witness_keeps_clear(scene);
+}
+
+}  // namespace
+
+bool keeps_clear(const Scene& scene, const Joints& q_rad) {
+  const ArmPose pose = scene.arm->pose(q_rad);
+  return scene.arm->solid_clearance(pose, scene.furniture, kFurnitureClearance_m) >= kFurnitureClearance_m &&
+         links_keep_apart(*scene.arm, pose);
+}
+
+bool make_furniture(Random& random, Scene& scene) {
+  scene.spheres.clear();
+  scene.witness_path = {};
+  scene.goal_has_orientation = scene.arm->goal_has_orientation();
+  scene.periods = static_cast<int>(kLongest_s / kPeriod_s);
+  if (!draw_goal(random, scene) || !draw_start(random, scene) || !plain_tracking_hits(scene)) return false;
+  return plan_witness(random, scene) && (!scene.family->mover || draw_mover(random, scene));
+}
+
+}  // namespace sidestep::campaign
