@@ -36,10 +36,6 @@ bool lies_in(const GoalRegion& region, const ArmPose& pose) {
          pointing.head<2>().dot(tool_m.head<2>()) >= region.least_outward * away_m;
 }
 
-bool links_keep_apart(const JudgeArm& arm, const ArmPose& pose) {
-  return arm.keeps_clear_of_itself(pose) && arm.self_clearance(pose, kLinksApart_m) >= kLinksApart_m;
-}
-
 /// Draws a goal posture and furniture around its tool.
 bool draw_goal(Random& random, Scene& scene) {
   const JudgeArm& arm = *scene.arm;
@@ -47,7 +43,7 @@ bool draw_goal(Random& random, Scene& scene) {
   for (int draw = 0; draw < kMostGoals; ++draw) {
     scene.goal_rad = draw_joints(random, arm.range(), 0.9);
     const ArmPose pose = arm.pose(scene.goal_rad);
-    if (!lies_in(region, pose) || !links_keep_apart(arm, pose)) continue;
+    if (!lies_in(region, pose) || !arm.keeps_clear_of_itself(pose)) continue;
     for (int piece = 0; piece < kMostPieces; ++piece) {
       scene.furniture = draw_furniture(random, scene.family->furniture, pose.tool());
       if (keeps_clear(scene, scene.goal_rad)) return true;
@@ -90,9 +86,11 @@ bool plan_witness(Random& random, Scene& scene) {
 }  // namespace
 
 bool keeps_clear(const Scene& scene, const Joints& q_rad) {
-  const ArmPose pose = scene.arm->pose(q_rad);
-  return scene.arm->solid_clearance(pose, scene.furniture, kFurnitureClearance_m) >= kFurnitureClearance_m &&
-         links_keep_apart(*scene.arm, pose);
+  const JudgeArm& arm = *scene.arm;
+  const ArmPose pose = arm.pose(q_rad);
+  return arm.keeps_clear_of_itself(pose) &&  // the cheapest first
+         arm.solid_clearance(pose, scene.furniture, kFurnitureClearance_m) >= kFurnitureClearance_m &&
+         arm.self_clearance(pose, kLinksApart_m) >= kLinksApart_m;
 }
 
 bool make_furniture(Random& random, Scene& scene) {

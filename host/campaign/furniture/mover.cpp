@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kMostDraws = 2'000;
 constexpr double kSlowest_mps = 0.1;
+constexpr int kEarlierOrLater = 150, kWayPeriods = 10;  // periods
 constexpr int kFurniturePeriods = 5;  // between two looks at the furniture: at most 15 mm of the sphere's way
 
 /// A sphere that passes near a random point of a moving link at a random time of the witness's motion.
@@ -40,6 +41,19 @@ bool touches_furniture(const Scene& scene, const SpherePath& path) {
   return false;
 }
 
+/// Whether the sphere touches the arm in a posture that the witness has a little earlier or later: it crosses the way,
+/// and another timing of the same path is a contact.
+bool crosses_way(const Scene& scene, const std::vector<ArmPose>& witness, const SpherePath& sphere) {
+  for (int k = 0; k * kPeriod_s < scene.witness_s; k += kWayPeriods) {
+    const int first = std::max(0, k - kEarlierOrLater), last = std::min(scene.periods, k + kEarlierOrLater);
+    for (int other = first; other <= last; other += kWayPeriods) {
+      const Vector3 centre_m = sphere.at(k * kPeriod_s).position_m;
+      if (scene.arm->clearance(witness[static_cast<size_t>(other)], centre_m, kSphereRadius_m, 0.0) < 0.0) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 bool draw_mover(Random& random, Scene& scene) {
@@ -48,6 +62,7 @@ bool draw_mover(Random& random, Scene& scene) {
   for (int draw = 0; draw < kMostDraws; ++draw) {
     SpherePath sphere = draw_sphere(random, scene);
     if (touches_furniture(scene, sphere) || !fits_witness(*scene.arm, witness, sphere)) continue;
+    if (!crosses_way(scene, witness, sphere)) continue;
     scene.spheres = {std::move(sphere)};
     return true;
   }

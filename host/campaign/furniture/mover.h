@@ -5,8 +5,9 @@
 
 namespace sidestep::campaign {
 
-/// Adds a sphere that flies straight past the scene's witness while that moves, and touches no furniture during the
-/// whole scene (witness_fit.h). Returns false if none is found.
+/// Adds a sphere that flies straight past the scene's witness while that moves (witness_fit.h), through a place where
+/// the arm of the witness is up to 1.5 s earlier or later. It touches no furniture during the whole scene. Returns
+/// false if none is found.
 bool draw_mover(Random& random, Scene& scene);
 
 }  // namespace sidestep::campaign

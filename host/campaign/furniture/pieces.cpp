@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "host/campaign/furniture/assembly.h"
 
@@ -29,18 +30,57 @@ struct Room {
   }
 };
 
-/// Cans on the floor of a room.
-void add_cans(Random& random, Assembly& assembly, const Room& room, int least, int most) {
-  const int cans = random.integer(least, most);
-  for (int can = 0; can < cans; ++can) {
-    const double radius_m = random.uniform(0.025, 0.045);
-    const double height_m = std::min(random.uniform(0.08, 0.20), room.high_m.z() - room.low_m.z() - 0.01);
-    const Vector3d inset_m(radius_m + 0.005, radius_m + 0.005, 0.0);
-    Vector3d foot_m = random.in_box(room.low_m + inset_m, room.high_m - inset_m);
-    foot_m.z() = room.low_m.z();
-    assembly.add_can(foot_m, radius_m, height_m);
+/// Puts things on the floor of a room, apart from one another.
+class Floor {
+ public:
+  Floor(Assembly& assembly, const Room& room) : assembly_(assembly), room_(room) {}
+
+  void add_cans(Random& random, int least, int most) {
+    const int cans = random.integer(least, most);
+    for (int can = 0; can < cans; ++can) {
+      const double radius_m = random.uniform(0.025, 0.045);
+      const double height_m = std::min(random.uniform(0.08, 0.20), room_.high_m.z() - room_.low_m.z() - 0.01);
+      const auto foot_m = draw_place(random, radius_m);
+      if (foot_m) assembly_.add_can(*foot_m, radius_m, height_m);
+    }
   }
-}
+
+  void add_boxes(Random& random, int least, int most) {
+    const int boxes = random.integer(least, most);
+    for (int box = 0; box < boxes; ++box) {
+      const Vector3d edges_m = random.in_box({0.05, 0.05, 0.05}, {0.15, 0.15, 0.25});
+      const auto foot_m = draw_place(random, 0.5 * edges_m.head<2>().norm());
+      const Vector3d half_m(0.5 * edges_m.x(), 0.5 * edges_m.y(), 0.0);
+      if (foot_m) assembly_.add_box(*foot_m - half_m, *foot_m + half_m + Vector3d(0, 0, edges_m.z()));
+    }
+  }
+
+ private:
+  /// The middle of a free circle on the floor; none if a few draws find none.
+  std::optional<Vector3d> draw_place(Random& random, double radius_m) {
+    const Vector3d inset_m(radius_m + 0.005, radius_m + 0.005, 0.0);
+    for (int draw = 0; draw < 10; ++draw) {
+      Vector3d place_m = random.in_box(room_.low_m + inset_m, room_.high_m - inset_m);
+      place_m.z() = room_.low_m.z();
+      const bool is_free = std::all_of(taken_.begin(), taken_.end(), [&](const Circle& other) {
+        return (other.middle_m - place_m).norm() > other.radius_m + radius_m;
+      });
+      if (!is_free) continue;
+      taken_.push_back({place_m, radius_m});
+      return place_m;
+    }
+    return std::nullopt;
+  }
+
+  struct Circle {
+    Vector3d middle_m;
+    double radius_m;
+  };
+
+  Assembly& assembly_;
+  Room room_;
+  std::vector<Circle> taken_;
+};
 
 void add_shelf(Random& random, Assembly& assembly) {
   const double width_m = random.uniform(0.5, 1.0), depth_m = random.uniform(0.25, 0.40);
@@ -57,7 +97,7 @@ void add_shelf(Random& random, Assembly& assembly) {
   for (const double height_m : heights_m) {
     assembly.add_box({x0, y0, room.low_m.z() - kBoard_m}, {x1, y1, room.low_m.z()});
     room.high_m = {x1, y1, room.low_m.z() + height_m};
-    add_cans(random, assembly, room, 0, 2);
+    Floor(assembly, room).add_cans(random, 0, 2);
     room.low_m.z() = room.high_m.z() + kBoard_m;
   }
   const double top_m = room.low_m.z();
@@ -79,7 +119,7 @@ void add_open_box(Random& random, Assembly& assembly) {
   assembly.add_box({high.x(), y0, low.z()}, {x1, y1, high.z()});
   assembly.add_box({low.x(), y0, low.z()}, {high.x(), low.y(), high.z()});
   assembly.add_box({low.x(), high.y(), low.z()}, {high.x(), y1, high.z()});
-  add_cans(random, assembly, room, 0, 2);
+  Floor(assembly, room).add_cans(random, 0, 2);
 }
 
 /// A bar along one axis through a point.
@@ -115,7 +155,7 @@ void add_cage(Random& random, Assembly& assembly) {
   Vector3d above_m(room.low_m.x() + random.uniform(0.4, 0.6) * edges_m.x(), room.low_m.y(), room.high_m.z());
   add_bar(assembly, above_m, 1, edges_m.y());
   assembly.add_box(room.low_m - Vector3d(0, 0, kBar_m), {room.high_m.x(), room.high_m.y(), room.low_m.z()});
-  add_cans(random, assembly, room, 0, 2);
+  Floor(assembly, room).add_cans(random, 0, 2);
 }
 
 /// A table top on four legs. Returns the room on it.
@@ -136,14 +176,9 @@ void add_table(Random& random, Assembly& assembly) {
   Room near = room;
   near.low_m.head<2>() = room.low_m.head<2>().cwiseMax(Eigen::Vector2d(-0.3, -0.3));
   near.high_m.head<2>() = room.high_m.head<2>().cwiseMin(Eigen::Vector2d(0.3, 0.3));
-  add_cans(random, assembly, near, 3, 6);
-  const int boxes = random.integer(0, 3);
-  for (int i = 0; i < boxes; ++i) {
-    const Vector3d edges_m = random.in_box({0.05, 0.05, 0.05}, {0.15, 0.15, 0.25});
-    Vector3d low_m = random.in_box(near.low_m, near.high_m - edges_m);
-    low_m.z() = near.low_m.z();
-    assembly.add_box(low_m, low_m + edges_m);
-  }
+  Floor floor(assembly, near);
+  floor.add_cans(random, 3, 6);
+  floor.add_boxes(random, 0, 3);
 }
 
 void add_under_table(Random& random, Assembly& assembly) {
@@ -156,7 +191,7 @@ void add_under_table(Random& random, Assembly& assembly) {
                    {top.high_m.x(), top.high_m.y(), below.low_m.z()});
   below.low_m.head<2>() = below.low_m.head<2>().cwiseMax(Eigen::Vector2d(-0.3, -0.3));
   below.high_m.head<2>() = below.high_m.head<2>().cwiseMin(Eigen::Vector2d(0.3, 0.3));
-  add_cans(random, assembly, below, 1, 4);
+  Floor(assembly, below).add_cans(random, 1, 4);
 }
 
 }  // namespace
