@@ -50,7 +50,7 @@ std::vector<Family> make_families() {
   add_people("two-people", People::kTwo);
   const auto add_furniture = [&all](const std::string& stream, Furniture furniture) {
     for (const bool mover : {false, true}) {
-      Family family{mover ? stream + "@mover" : stream, stream, 0, mover ? 0.3 : 0.0};
+      Family family{mover ? stream + "@mover" : stream, stream, 0, mover ? 0.5 : 0.0};
       family.furniture = furniture;
       family.mover = mover;
       all.push_back(family);

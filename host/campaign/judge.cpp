@@ -27,7 +27,7 @@ Judge::Judge(const Scene& scene, const Joints& qd_radps)
       smoothness_(qd_radps),
       start_rotation_(scene.arm->pose(scene.start_rad).tool_rotation),
       last_rad_(scene.start_rad) {
-  metrics_.obstacles = static_cast<double>(scene.spheres.size() + scene.capsules.size());
+  metrics_.obstacles = static_cast<double>(scene.spheres.size() + scene.capsules.size() + scene.furniture.size());
   metrics_.duration_s = scene.duration_s();
   if (scene.family->dodge || scene.family->has_people()) return;
   metrics_.witness_arrival_s = witness_arrival_s(scene);

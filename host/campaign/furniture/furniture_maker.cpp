@@ -60,6 +60,17 @@ bool draw_start(Random& random, Scene& scene) {
   return false;
 }
 
+/// Whether the straight joint path from start to goal touches the furniture.
+bool straight_path_is_blocked(const Scene& scene) {
+  const Joints way_rad = scene.goal_rad - scene.start_rad;
+  const int steps = static_cast<int>(way_rad.norm() / kPlannedStep_rad) + 1;
+  for (int k = 0; k <= steps; ++k) {
+    const ArmPose pose = scene.arm->pose(scene.start_rad + static_cast<double>(k) / steps * way_rad);
+    if (scene.arm->solid_clearance(pose, scene.furniture, 0.0) < 0.0) return true;
+  }
+  return false;
+}
+
 /// Whether the timed witness keeps clear everywhere; the planner has looked at coarser steps.
 bool witness_keeps_clear(const Scene& scene) {
   const double step_s = kPeriod_s / kChecksPerPeriod;
@@ -98,7 +109,8 @@ bool make_furniture(Random& random, Scene& scene) {
   scene.witness_path = {};
   scene.goal_has_orientation = scene.arm->goal_has_orientation();
   scene.periods = static_cast<int>(kLongest_s / kPeriod_s);
-  if (!draw_goal(random, scene) || !draw_start(random, scene) || !plain_tracking_hits(scene)) return false;
+  if (!draw_goal(random, scene) || !draw_start(random, scene)) return false;
+  if (!straight_path_is_blocked(scene) || !plain_tracking_hits(scene)) return false;
   return plan_witness(random, scene) && (!scene.family->mover || draw_mover(random, scene));
 }
 

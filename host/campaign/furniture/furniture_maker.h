@@ -10,8 +10,8 @@ constexpr double kFurnitureClearance_m = 0.01;
 
 /// Draws start, goal, furniture and, if the family has one, the mover of a scene, and plans its witness: a joint path
 /// that keeps kFurnitureClearance_m from the furniture, the controller's distances between links, the joint limits and,
-/// in time, kWitnessClearance_m from the mover (witness_fit.h). Plain tracking touches something. Returns false if
-/// these draws give no such scene.
+/// in time, kWitnessClearance_m from the mover (witness_fit.h). Plain tracking and the straight joint path to the goal
+/// touch the furniture. Returns false if these draws give no such scene.
 bool make_furniture(Random& random, Scene& scene);
 
 /// Whether the arm keeps the witness's distances from the scene's furniture and from itself in this posture.

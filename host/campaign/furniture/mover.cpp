@@ -10,7 +10,7 @@ namespace {
 constexpr int kMostDraws = 2'000;
 constexpr double kSlowest_mps = 0.1;
 constexpr int kEarlierOrLater = 150, kWayPeriods = 10;  // periods
-constexpr int kFurniturePeriods = 5;  // between two looks at the furniture: at most 15 mm of the sphere's way
+constexpr int kFurniturePeriods = 5;                    // between two looks at the furniture: at most 25 mm of the way
 
 /// A sphere that passes near a random point of a moving link at a random time of the witness's motion.
 SpherePath draw_sphere(Random& random, const Scene& scene) {

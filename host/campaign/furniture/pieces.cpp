@@ -28,6 +28,14 @@ struct Room {
     }
     return room;
   }
+
+  /// The part of the room around the goal, 0.6 m wide.
+  Room near_goal() const {
+    Room near = *this;
+    near.low_m.head<2>() = low_m.head<2>().cwiseMax(Eigen::Vector2d(-0.3, -0.3));
+    near.high_m.head<2>() = high_m.head<2>().cwiseMin(Eigen::Vector2d(0.3, 0.3));
+    return near;
+  }
 };
 
 /// Puts things on the floor of a room, apart from one another.
@@ -83,21 +91,22 @@ class Floor {
 };
 
 void add_shelf(Random& random, Assembly& assembly) {
-  const double width_m = random.uniform(0.5, 1.0), depth_m = random.uniform(0.25, 0.40);
+  const double width_m = random.uniform(0.5, 1.0), depth_m = random.uniform(0.25, 0.45);
   const int compartments = random.integer(2, 3), of_goal = random.integer(0, compartments - 1);
   std::vector<double> heights_m;
-  for (int i = 0; i < compartments; ++i) heights_m.push_back(random.uniform(0.28, 0.45));
+  for (int i = 0; i < compartments; ++i) heights_m.push_back(random.uniform(0.24, 0.42));
   Room room;
-  room.low_m.x() = -random.uniform(0.05, depth_m - 0.06);
+  room.low_m.x() = -random.uniform(0.10, depth_m - 0.05);
   room.low_m.y() = -random.uniform(0.12, width_m - 0.12);
   room.low_m.z() = -random.uniform(0.08, heights_m[static_cast<size_t>(of_goal)] - 0.08);
   for (int i = 0; i < of_goal; ++i) room.low_m.z() -= heights_m[static_cast<size_t>(i)] + kBoard_m;
   const double x0 = room.low_m.x(), x1 = x0 + depth_m, y0 = room.low_m.y(), y1 = y0 + width_m;
   const double bottom_m = room.low_m.z() - kBoard_m;
-  for (const double height_m : heights_m) {
+  for (int i = 0; i < compartments; ++i) {
+    const double height_m = heights_m[static_cast<size_t>(i)];
     assembly.add_box({x0, y0, room.low_m.z() - kBoard_m}, {x1, y1, room.low_m.z()});
     room.high_m = {x1, y1, room.low_m.z() + height_m};
-    Floor(assembly, room).add_cans(random, 0, 2);
+    Floor(assembly, i == of_goal ? room.near_goal() : room).add_cans(random, i == of_goal ? 1 : 0, 3);
     room.low_m.z() = room.high_m.z() + kBoard_m;
   }
   const double top_m = room.low_m.z();
@@ -108,9 +117,9 @@ void add_shelf(Random& random, Assembly& assembly) {
 }
 
 void add_open_box(Random& random, Assembly& assembly) {
-  const Vector3d edges_m = random.in_box({0.28, 0.28, 0.15}, {0.50, 0.50, 0.35});
+  const Vector3d edges_m = random.in_box({0.24, 0.24, 0.20}, {0.45, 0.45, 0.45});
   Room room = Room::around_goal(random, edges_m, 0.10);
-  room.low_m.z() = -random.uniform(0.03, edges_m.z() - 0.02);
+  room.low_m.z() = -random.uniform(0.03, 0.5 * edges_m.z());
   room.high_m.z() = room.low_m.z() + edges_m.z();
   const Vector3d &low = room.low_m, &high = room.high_m;
   const double x0 = low.x() - kBoard_m, x1 = high.x() + kBoard_m, y0 = low.y() - kBoard_m, y1 = high.y() + kBoard_m;
@@ -119,7 +128,7 @@ void add_open_box(Random& random, Assembly& assembly) {
   assembly.add_box({high.x(), y0, low.z()}, {x1, y1, high.z()});
   assembly.add_box({low.x(), y0, low.z()}, {high.x(), low.y(), high.z()});
   assembly.add_box({low.x(), high.y(), low.z()}, {high.x(), y1, high.z()});
-  Floor(assembly, room).add_cans(random, 0, 2);
+  Floor(assembly, room).add_cans(random, 0, 3);
 }
 
 /// A bar along one axis through a point.
@@ -131,7 +140,7 @@ void add_bar(Assembly& assembly, Vector3d from_m, int axis, double length_m) {
 }
 
 void add_cage(Random& random, Assembly& assembly) {
-  const Vector3d edges_m = random.in_box({0.36, 0.36, 0.36}, {0.60, 0.60, 0.60});
+  const Vector3d edges_m = random.in_box({0.32, 0.32, 0.32}, {0.55, 0.55, 0.55});
   const Room room = Room::around_goal(random, edges_m, 0.08);
   for (int axis = 0; axis < 3; ++axis) {
     const int second = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -155,7 +164,7 @@ void add_cage(Random& random, Assembly& assembly) {
   Vector3d above_m(room.low_m.x() + random.uniform(0.4, 0.6) * edges_m.x(), room.low_m.y(), room.high_m.z());
   add_bar(assembly, above_m, 1, edges_m.y());
   assembly.add_box(room.low_m - Vector3d(0, 0, kBar_m), {room.high_m.x(), room.high_m.y(), room.low_m.z()});
-  Floor(assembly, room).add_cans(random, 0, 2);
+  Floor(assembly, room).add_cans(random, 0, 3);
 }
 
 /// A table top on four legs. Returns the room on it.
@@ -172,26 +181,22 @@ Room add_table_top(Random& random, Assembly& assembly, double top_m, double fron
 }
 
 void add_table(Random& random, Assembly& assembly) {
-  const Room room = add_table_top(random, assembly, -random.uniform(0.05, 0.18), random.uniform(0.1, 0.4));
-  Room near = room;
-  near.low_m.head<2>() = room.low_m.head<2>().cwiseMax(Eigen::Vector2d(-0.3, -0.3));
-  near.high_m.head<2>() = room.high_m.head<2>().cwiseMin(Eigen::Vector2d(0.3, 0.3));
-  Floor floor(assembly, near);
-  floor.add_cans(random, 3, 6);
+  const double front_m = random.uniform(0.1, 0.4), above_m = random.uniform(0.05, 0.18);
+  const Room room = add_table_top(random, assembly, -above_m, front_m);
+  Floor floor(assembly, room.near_goal());
+  floor.add_cans(random, 3, 7);
   floor.add_boxes(random, 0, 3);
 }
 
 void add_under_table(Random& random, Assembly& assembly) {
-  const double front_m = random.uniform(0.08, 0.35);
-  const Room top = add_table_top(random, assembly, random.uniform(0.13, 0.35), front_m);
+  const double front_m = random.uniform(0.10, 0.40);
+  const Room top = add_table_top(random, assembly, random.uniform(0.12, 0.28), front_m);
   Room below = top;
-  below.low_m.z() = -random.uniform(0.08, 0.25);
+  below.low_m.z() = -random.uniform(0.08, 0.20);
   below.high_m.z() = top.low_m.z() - 0.03;
   assembly.add_box({top.low_m.x(), top.low_m.y(), below.low_m.z() - kBoard_m},
                    {top.high_m.x(), top.high_m.y(), below.low_m.z()});
-  below.low_m.head<2>() = below.low_m.head<2>().cwiseMax(Eigen::Vector2d(-0.3, -0.3));
-  below.high_m.head<2>() = below.high_m.head<2>().cwiseMin(Eigen::Vector2d(0.3, 0.3));
-  Floor(assembly, below).add_cans(random, 1, 4);
+  Floor(assembly, below.near_goal()).add_cans(random, 1, 5);
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ GoalRegion goal_region(Furniture kind);
 
 /// Draws a piece of furniture and cans in it, of random sizes, around a goal of the tool; base frame. Nothing is
 /// checked against the arm. The ranges are wide enough for links of 0.10 m diameter.
-///   - shelf: two or three compartments with sides and a back, up to four cans; the goal is in one of the compartments
-///   - box: open at the top, up to two cans
-///   - cage: bars along all edges and across the faces, on a board, up to two cans
+///   - shelf: two or three compartments with sides and a back, cans in them; the goal is in one of the compartments
+///   - box: open at the top, up to three cans
+///   - cage: bars along all edges and across the faces, on a board, up to three cans
 ///   - table: cans and boxes stand on it, around the goal
 ///   - under-table: a table above the goal, a board with cans below it
 std::vector<sim::Obstacle> draw_furniture(Random& random, Furniture kind, const Eigen::Vector3d& goal_m);

@@ -33,6 +33,7 @@ std::vector<Row> some_rows() {
         row.metrics.jerk_radps3 = 1e300 * any(engine);
         row.metrics.cpu_mean_s = 1e-6 * any(engine);
         if (family.has_people()) row.metrics.rest_clearance_m = any(engine);
+        if (family.has_furniture()) row.metrics.final_turn_rad = any(engine);
         if (family.has_people()) row.metrics.late_way_out = seed % 2 == 0 ? 1.0 : 0.0;
         rows.push_back(row);
       }
@@ -64,16 +65,19 @@ void a_csv_file_preserves_every_bit(void**) {
   }
 }
 
-void only_files_with_people_have_their_columns(void**) {
+void only_files_with_people_or_furniture_have_their_columns(void**) {
   const std::string file = scratch_folder() + "/columns.csv";
-  const auto has_columns = [&](const char* family) {
+  const auto has_columns = [&](const char* family, const char* column) {
     write_csv(file, {{&family_named(family), "paper", 5, {}}});
     const std::vector<Row> read_back = read_csv(file);
     check(read_back.size() == 1 && read_back[0].family == &family_named(family), "%s", family);
-    return sidestep::test::text_of(file).find("way_out") != std::string::npos;
+    return sidestep::test::text_of(file).find(column) != std::string::npos;
   };
-  assert_false(has_columns("moving"));
-  assert_true(has_columns("walk-by@camera"));
+  for (const char* column : {"way_out", "goal_clearance_m"}) assert_false(has_columns("moving", column));
+  assert_true(has_columns("walk-by@camera", "way_out"));
+  assert_false(has_columns("walk-by@camera", "goal_clearance_m"));
+  assert_true(has_columns("shelf", "goal_clearance_m"));
+  assert_false(has_columns("shelf", "way_out"));
 }
 
 void rows_of_a_killed_writer_are_read_without_its_unfinished_line(void**) {
@@ -209,6 +213,14 @@ void contacts_with_persons_are_classified(void**) {
   assert_false(touched_deeper_than_at_rest(none) || touched_deeper_than_at_rest(late));
 }
 
+void a_goal_among_furniture_is_reached_in_position_and_orientation(void**) {
+  Row turned = trial(0.02, 0.001, 3.0), there = turned;
+  turned.metrics.final_turn_rad = 0.06;
+  there.metrics.final_turn_rad = 0.04;
+  assert_true(arrived(there));
+  assert_false(arrived(turned) || succeeded(turned));
+}
+
 void links_that_touch_each_other_are_a_contact(void**) {
   Row near = trial(0.02, 0.001, 3.0), folded = near;
   near.metrics.self_clearance_m = 0.001;
@@ -255,7 +267,7 @@ void a_stopped_run_starts_no_trial(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_csv_file_preserves_every_bit),
-      cmocka_unit_test(only_files_with_people_have_their_columns),
+      cmocka_unit_test(only_files_with_people_or_furniture_have_their_columns),
       cmocka_unit_test(rows_of_a_killed_writer_are_read_without_its_unfinished_line),
       cmocka_unit_test(merged_shards_give_the_table_of_the_whole_run),
       cmocka_unit_test(a_duplicate_trial_is_rejected_by_name),
@@ -265,6 +277,7 @@ int main() {
       cmocka_unit_test(confidence_intervals_are_wilsons),
       cmocka_unit_test(the_table_prints_shares_with_their_interval),
       cmocka_unit_test(contacts_with_persons_are_classified),
+      cmocka_unit_test(a_goal_among_furniture_is_reached_in_position_and_orientation),
       cmocka_unit_test(links_that_touch_each_other_are_a_contact),
       cmocka_unit_test(threads_and_shards_do_not_change_the_results),
       cmocka_unit_test(a_stopped_run_starts_no_trial),
