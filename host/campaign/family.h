@@ -39,8 +39,8 @@ const std::vector<Family>& families();
 const Family& family_named(const std::string& name);
 
 /// The families that a value of `--family` selects: a family's name, `dodge`, `people` or `furniture` for all of
-/// theirs, or `all` for all but those of furniture, whose witnesses take as long as all other families together. Throws
-/// like family_named().
+/// theirs, or `all` for all but those of furniture, whose witnesses cost up to a minute a scene (arms of meshes, the
+/// cage). Throws like family_named().
 std::vector<const Family*> families_of(const std::string& word);
 
 }  // namespace sidestep::campaign

@@ -26,8 +26,8 @@ class Judge {
   /// between the last period and this one.
   void measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s);
   void measure_mover(const ArmPose& arm, double t_s);
-  /// Whether links are near each other.
-  bool measure_self_clearance(const ArmPose& arm);
+  /// Least clearance between links, as far as links are near each other.
+  double measure_self_clearance(const ArmPose& arm);
   void measure_joints(const Joints& q_rad);
   void measure_tool_error(const ArmPose& arm, double t_s);
   /// Only among furniture, whose goal rests.

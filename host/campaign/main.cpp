@@ -41,8 +41,8 @@ struct Options {
 void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
                  "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, people, furniture, "
-                 "one of their variants (shelf, box, cage, table, under-table and each with @mover of the last), or "
-                 "all but furniture")
+                 "one of the variants of the last three (such as shelf or shelf@mover), or all, which is all but "
+                 "furniture")
       .show_default();
   app.add_option("--count", options.count, "scenes of each family, runs of a search")
       .show_default()
