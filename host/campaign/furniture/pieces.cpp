@@ -93,8 +93,8 @@ class Floor {
 void add_shelf(Random& random, Assembly& assembly) {
   const double width_m = random.uniform(0.5, 1.0), depth_m = random.uniform(0.25, 0.45);
   const int compartments = random.integer(2, 3), of_goal = random.integer(0, compartments - 1);
-  std::vector<double> heights_m;
-  for (int i = 0; i < compartments; ++i) heights_m.push_back(random.uniform(0.24, 0.42));
+  std::vector<double> heights_m(static_cast<size_t>(compartments));
+  for (double& height_m : heights_m) height_m = random.uniform(0.24, 0.42);
   Room room;
   room.low_m.x() = -random.uniform(0.10, depth_m - 0.05);
   room.low_m.y() = -random.uniform(0.12, width_m - 0.12);
@@ -132,7 +132,7 @@ void add_open_box(Random& random, Assembly& assembly) {
 }
 
 /// A bar along one axis through a point.
-void add_bar(Assembly& assembly, Vector3d from_m, int axis, double length_m) {
+void add_bar(Assembly& assembly, const Vector3d& from_m, int axis, double length_m) {
   const Vector3d half_m = 0.5 * Vector3d::Constant(kBar_m);
   Vector3d to_m = from_m;
   to_m[axis] += length_m;
@@ -161,7 +161,7 @@ void add_cage(Random& random, Assembly& assembly) {
       add_bar(assembly, from_m, 2, edges_m.z());
     }
   }
-  Vector3d above_m(room.low_m.x() + random.uniform(0.4, 0.6) * edges_m.x(), room.low_m.y(), room.high_m.z());
+  const Vector3d above_m(room.low_m.x() + random.uniform(0.4, 0.6) * edges_m.x(), room.low_m.y(), room.high_m.z());
   add_bar(assembly, above_m, 1, edges_m.y());
   assembly.add_box(room.low_m - Vector3d(0, 0, kBar_m), {room.high_m.x(), room.high_m.y(), room.low_m.z()});
   Floor(assembly, room).add_cans(random, 0, 3);
