@@ -21,6 +21,7 @@ constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 constexpr double kRest_s = 5.0, kLongest_s = 12.0;  // time after the witness's motion; longest scene
 constexpr int kMostWitnesses = 100'000;             // draws until a witness is short enough
 constexpr int kMostAttempts = 1'000;                // to make a scene; the LWA3's scenes needed up to 83
+constexpr int kMostFurnitureAttempts = 200;         // the same among furniture; LWA3 and Panda needed up to 28
 constexpr int kMostDraws = 20'000;                  // of a posture, or of spheres before another witness is drawn
 
 /// Draws a posture within a share of the joints' range, high enough above the floor.
@@ -138,10 +139,11 @@ Scene make_scene(const Family& family, uint64_t seed, const JudgeArm& arm) {
   scene.seed = seed;
   scene.arm = &arm;
   Random random(family.stream, seed);
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt)
+  const int most_attempts = family.has_furniture() ? kMostFurnitureAttempts : kMostAttempts;
+  for (int attempt = 0; attempt < most_attempts; ++attempt)
     if (try_scene(random, scene)) return scene;
   throw std::runtime_error(
-      fmt::format("{}: no scene in {} attempts: no {}", family.name, kMostAttempts, lacks(family)));
+      fmt::format("{}: no scene in {} attempts: no {}", family.name, most_attempts, lacks(family)));
 }
 
 }  // namespace sidestep::campaign

@@ -116,7 +116,7 @@ void the_mover_touches_no_furniture(void**) {
       for (const sim::Obstacle& solid : scene.furniture) {
         const double gap_m = sim::signed_distance_m({sim::Shape::kSphere, {kSphereRadius_m, 0, 0}}, base_from_sphere,
                                                     solid.solid, solid.motion.base_from_body());
-        check(gap_m > -0.002, "%s at %g s: %g m", name(scene).c_str(), t_s, gap_m);  // it looks every 15 mm
+        check(gap_m > -0.002, "%s at %g s: %g m", name(scene).c_str(), t_s, gap_m);  // it looks every 25 mm
       }
     }
   }
