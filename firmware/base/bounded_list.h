@@ -47,7 +47,7 @@ class BoundedList {
   const T* data() const { return std::launder(reinterpret_cast<const T*>(storage_)); }
 
   int size_ = 0;
-  alignas(T) unsigned char storage_[sizeof(T[capacity])];
+  alignas(T) std::byte storage_[sizeof(T[capacity])];
 };
 
 }  // namespace sidestep

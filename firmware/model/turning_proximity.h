@@ -20,4 +20,8 @@ namespace sidestep {
 BoundedList<Proximity, 2> proximities_after_turn(const PosedShape& link, const Obstacle& obstacle, const Proximity& now,
                                                  const Vector3& turn_rad);
 
+/// The same of two links; `second` takes the place of the obstacle.
+BoundedList<Proximity, 2> proximities_after_turn(const PosedShape& first, const PosedShape& second,
+                                                 const Proximity& now, const Vector3& turn_rad);
+
 }  // namespace sidestep

@@ -19,6 +19,9 @@ constexpr double kTwoSides_m = 0.08;
 /// A body that turns less while the arm brakes meets obstacles where it is nearest now.
 constexpr double kLeastTurn_rad = 0.01;
 
+/// Links farther apart than this above their clearance do not turn into each other while the arm brakes.
+constexpr double kNearLinks_m = 0.03;
+
 /// A link that can leave a person only more slowly has no row for it.
 constexpr double kLeastSpeed_mps = 0.02;
 
@@ -114,6 +117,8 @@ class RowMaker {
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
     const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
                                       pair.normal.dot(closing_mps));
+    add_turning(self, pair, PosedShape{a, input_.poses, links[self.first]},
+                PosedShape{b, input_.poses, links[self.second]});
     rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
     const double room_m = pair.distance_m - self.clearance_m;
     if (!(room_m < least_room_m_)) return;
@@ -189,6 +194,18 @@ class RowMaker {
   }
 
  private:
+  /// Two links of which one turns past the other.
+  void add_turning(const SelfPair& self, const Proximity& pair, const PosedShape& first, const PosedShape& second) {
+    if (pair.distance_m > self.clearance_m + kNearLinks_m) return;
+    const int a = first.shape.body, b = second.shape.body;
+    const Vector3 turn_rad = braking_s_ * (angular_velocity(a) - angular_velocity(b));
+    if (turn_rad.norm() < kLeastTurn_rad) return;
+    for (const Proximity& next : proximities_after_turn(first, second, pair, turn_rad)) {
+      const JointVector row = axes_.row(a, next.on_arm, next.normal) - axes_.row(b, next.on_obstacle, next.normal);
+      add_hard(row, least_mps(row, sustainable_), self_room_m(next.distance_m, self.clearance_m), 0.0);
+    }
+  }
+
   const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
 
   /// The time that the arm takes to stop, s.

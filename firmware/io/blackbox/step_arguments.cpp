@@ -1,5 +1,6 @@
 #include "firmware/io/blackbox/step_arguments.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "firmware/base/hash.h"
@@ -7,7 +8,7 @@
 namespace sidestep {
 
 void to_image(const StepArguments& arguments, StepArgumentsImage& image) {
-  std::memcpy(image.bytes, static_cast<const void*>(&arguments), sizeof(StepArguments));
+  std::copy_n(reinterpret_cast<const unsigned char*>(&arguments), sizeof(StepArguments), image.bytes);
   image.checksum = fnv1a(image.bytes, sizeof(StepArguments));
 }
 
@@ -16,7 +17,7 @@ bool from_image(const void* bytes, size_t size, StepArguments& arguments) {
   if (size != sizeof image) return false;
   std::memcpy(&image, bytes, size);
   if (image.checksum != fnv1a(image.bytes, sizeof(StepArguments))) return false;
-  std::memcpy(static_cast<void*>(&arguments), image.bytes, sizeof(StepArguments));
+  std::copy_n(image.bytes, sizeof(StepArguments), reinterpret_cast<unsigned char*>(&arguments));
   arguments.state.supervision.message = "";
   return true;
 }

@@ -80,6 +80,33 @@ void the_points_are_those_that_come_nearest(void**) {
   assert_true(worst_m < 0.5 * worst_without_m);
 }
 
+/// A capsule as a link and the same capsule as an obstacle are met alike.
+void another_link_is_met_like_an_obstacle_of_its_shape(void**) {
+  Random random(2);
+  int seen = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Vector3 middle = random.inside(-0.5, 0.5), half = 0.3 * random.direction();
+    const Rod rod(middle - half, middle + half, random.uniform(0.02, 0.08));
+    const Vector3 centre = middle + random.direction() * random.uniform(0.2, 0.6);
+    const Obstacle obstacle = capsule_obstacle(centre, random.turn().toRotationMatrix(), 0.05, 0.6);
+    const Rod other(obstacle.capsule.start, obstacle.capsule.end, 0.05);
+    const Proximity now = measure_pair(rod.capsule, obstacle);
+    if (now.distance_m < 0.02) continue;
+    const Vector3 turn_rad = random.direction() * random.uniform(0.0, 0.5);
+    const auto expected = proximities_after_turn(rod.posed, obstacle, now, turn_rad);
+    const auto found = proximities_after_turn(rod.posed, other.posed, now, turn_rad);
+    assert_int_equal(found.size(), expected.size());
+    for (int i = 0; i < found.size(); ++i) {
+      check_near(found[i].distance_m, expected[i].distance_m, 1e-9);
+      check_near(found[i].normal, expected[i].normal, 1e-6);
+      check_near(found[i].on_arm, expected[i].on_arm, 1e-6);
+      check_near(found[i].on_obstacle, expected[i].on_obstacle, 1e-6);
+      ++seen;
+    }
+  }
+  check(seen > 300, "%d", seen);
+}
+
 }  // namespace
 
 int main() {
@@ -87,6 +114,7 @@ int main() {
       cmocka_unit_test(a_rod_that_tilts_above_a_table_meets_it_with_its_other_end),
       cmocka_unit_test(a_rod_that_tilts_above_two_edges_of_a_box_meets_the_other_edge),
       cmocka_unit_test(the_points_are_those_that_come_nearest),
+      cmocka_unit_test(another_link_is_met_like_an_obstacle_of_its_shape),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
