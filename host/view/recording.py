@@ -27,7 +27,7 @@ def words_of(one, latest):
 def page(log, arms, duration_s):
     """HTML that plays the log, viser's client included. arms: arm_view.ArmView each; duration_s: of the log."""
     with contextlib.redirect_stdout(io.StringIO()):  # viser prints the address of its server, which nobody needs
-        server = viser.ViserServer(host="localhost", port=0, verbose=False)
+        server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         try:
             return recorded(server, log, arms, max(FRAME_S, duration_s / MOST_FRAMES)).as_html()
         finally:
