@@ -35,8 +35,8 @@ NominalCommand scaled(NominalCommand nominal, double scale) {
 }
 
 /// Weight of the comfort tier, s2/m2. Far from the target a detour costs little, so comfort weighs much; at the target
-/// the tool's task comes first. A guide keeps its own clearance. Where a posture is the goal, all joints
-/// have a task, not only the tool with its tool_weight, and comfort near the goal would only keep the arm away from it.
+/// the tool's task comes first. A guide keeps its own clearance. Where a posture is the goal, all joints have a task,
+/// not only the tool with its tool_weight, and comfort near the goal would only keep the arm away from it.
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
   const bool is_posture = mode == Mode::kTrack && input.target.is_posture();
   const double least = is_posture ? 1e-3 : shield.comfort_least_weight;

@@ -71,9 +71,8 @@ void FreeSpace::set(const Snapshot& from, double moving_m, double rest_m) {
   obstacles_.clear();
   for (int i = 0; i < resting_.count; ++i) {
     const Obstacle& obstacle = resting_.obstacles[i];
-    const AllowedContact allowed = allowed_contact(links.poses, obstacle.id);
-    if (allowed == AllowedContact::kAll) continue;
-    const int last_body = allowed == AllowedContact::kTool ? model_.arm.joints - 1 : model_.arm.joints;
+    const int last_body = last_body_to_keep_clear(model_.arm, links.poses, obstacle.id);
+    if (last_body < 0) continue;
     const ConvexSolid solid = solid_of(obstacle);
     double required_m = required_clearance_m(moving_m, rest_m, obstacle);
     const double now_m = clearance_after(model_.arm, links.poses, &obstacle, 1, 0.0, required_m + kStartAllowance_m);

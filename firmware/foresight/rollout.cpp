@@ -19,6 +19,8 @@ constexpr double kArrived_rad = 0.05;
 // A tool's way of about 10 mm.
 constexpr double kInPosture_rad = 0.02;
 constexpr double kSamePosture_rad = 0.005;
+constexpr double kSamePlace_m = 0.005;
+constexpr double kSameOrientation_rad = 0.03;
 
 constexpr double kNoArrivalCost_s = 5.0;
 
@@ -61,6 +63,12 @@ bool is_in_posture(const Arm& arm, const JointVector& q_rad, const Target& targe
 bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale) {
   if (!a.is_posture() || !b.is_posture()) return a.is_posture() == b.is_posture();
   return (a.posture_rad - b.posture_rad).cwiseQuotient(joint_scale).cwiseAbs().maxCoeff() <= kSamePosture_rad;
+}
+
+bool is_same_goal(const Target& a, const Target& b, const JointVector& joint_scale) {
+  return is_same_posture(a, b, joint_scale) && a.tracks_orientation == b.tracks_orientation &&
+         (a.position_m - b.position_m).norm() <= kSamePlace_m &&
+         (!a.tracks_orientation || a.orientation.angularDistance(b.orientation) <= kSameOrientation_rad);
 }
 
 Rollout::Rollout(const Model& model) : coarse_(model) {

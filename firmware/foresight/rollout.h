@@ -47,6 +47,9 @@ constexpr double kTargetCoast_s = 1.0;
 /// forecast or plan for one is good for the other, the law bridges the rest.
 bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale);
 
+/// Whether is_same_posture(), and the targets agree within 5 mm and, where they track orientation, 0.03 rad.
+bool is_same_goal(const Target& a, const Target& b, const JointVector& joint_scale);
+
 /// The target after_s later: it keeps its velocity for kTargetCoast_s and then rests.
 Target predicted_target(const Target& target, double after_s);
 

@@ -26,9 +26,6 @@ constexpr double kRestAllowance_m = 0.001;
 // A target that is slower rests.
 constexpr double kTargetRests_mps = 0.01;
 constexpr double kTargetRests_radps = 0.02;
-// A plan for a target that has moved less is still good: the law bridges the rest.
-constexpr double kSameTarget_m = 0.005;
-constexpr double kSameTarget_rad = 0.03;
 
 constexpr double kStayAtGoal_s = 1.0;  // a guide ends so much before the horizon
 constexpr double kPauses_s[] = {0.0, 0.4, 0.8, 1.5};
@@ -61,12 +58,7 @@ void TreePlanner::reset() {
 }
 
 bool TreePlanner::is_current(const Snapshot& now) const {
-  if (!valid_ || now.target.tracks_orientation != target_.tracks_orientation) return false;
-  if (!is_same_posture(now.target, target_, model_.arm.joint_scale)) return false;
-  if ((now.target.position_m - target_.position_m).norm() > kSameTarget_m) return false;
-  if (now.target.tracks_orientation && now.target.orientation.angularDistance(target_.orientation) > kSameTarget_rad)
-    return false;
-  return free_.is_current(now);
+  return valid_ && is_same_goal(now.target, target_, model_.arm.joint_scale) && free_.is_current(now);
 }
 
 void TreePlanner::begin(const Snapshot& from) {

@@ -62,10 +62,9 @@ class Gatherer {
         clearance_(clearance) {}
 
   void gather(const Obstacle& obstacle, int index, double growth_m) {
-    const AllowedContact allowed = allowed_contact(poses_, obstacle.id);
-    if (allowed == AllowedContact::kAll) return;
+    last_body_ = last_body_to_keep_clear(arm_, poses_, obstacle.id);
+    if (last_body_ < 0) return;
     limit_m_ = std::min(listed_m_, range_of(obstacle));
-    last_body_ = allowed == AllowedContact::kTool ? arm_.joints - 1 : arm_.joints;
     if (obstacle.capsule.is_sphere())
       gather_sphere(obstacle, index, growth_m);
     else

@@ -46,15 +46,13 @@ inline const BodyShape& shape_at(const Arm& arm, const LinkPoses& poses, int ind
   return poses.others->attachments->held[index - links];
 }
 
-/// Which shapes may touch an obstacle.
-enum class AllowedContact { kNone, kTool, kAll };
-
-/// kNone unless Attachments::allowed names the obstacle. kTool: the shapes of the last body and what the tool holds.
-/// kAll: a held shape has the obstacle's id, so the obstacle is what the tool holds.
-inline AllowedContact allowed_contact(const LinkPoses& poses, int32_t obstacle_id) {
+/// The shapes of the bodies up to this one keep clear of an obstacle, those of bodies above may touch it: all bodies
+/// keep clear unless Attachments::allowed names the obstacle, then all but the last body, which carries what the tool
+/// holds. -1: a held shape has the obstacle's id, so the obstacle is what the tool holds, and no body avoids it.
+inline int last_body_to_keep_clear(const Arm& arm, const LinkPoses& poses, int32_t obstacle_id) {
   const Attachments* attachments = poses.others->attachments;
-  if (!attachments || !attachments->allows(obstacle_id)) return AllowedContact::kNone;
-  return attachments->holds(obstacle_id) ? AllowedContact::kAll : AllowedContact::kTool;
+  if (!attachments || !attachments->allows(obstacle_id)) return arm.joints;
+  return attachments->holds(obstacle_id) ? -1 : arm.joints - 1;
 }
 
 /// Index into LinkPoses of the frame in which a shape is given.

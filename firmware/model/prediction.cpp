@@ -77,9 +77,8 @@ double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* o
   for (int o = 0; o < count; ++o) {
     const Obstacle& obstacle = obstacles[o];
     const Capsule& capsule = obstacle.capsule;
-    const AllowedContact allowed = allowed_contact(poses, obstacle.id);
-    if (allowed == AllowedContact::kAll) continue;
-    const int last_body = allowed == AllowedContact::kTool ? arm.joints - 1 : arm.joints;
+    const int last_body = last_body_to_keep_clear(arm, poses, obstacle.id);
+    if (last_body < 0) continue;
     const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
     const double found_m = capsule.is_sphere()
                                ? nearest_to_sphere_m(links, last_body, capsule.start + obstacle.velocity_mps * after_s,

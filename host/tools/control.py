@@ -6,12 +6,10 @@ resume  the arm follows its target, at the speed of --speed
 stop    the arm brakes to rest and the controller ends; it has to be started again
 """
 import argparse
-import time
 
-from wire import add_lcm_url, command_line, connect, control_t, finite, publish
+from wire import add_lcm_url, command_line, control_t, finite, publish, publish_once
 
 COMMANDS = {"pause": control_t.PAUSE, "resume": control_t.RESUME, "stop": control_t.STOP}
-TIMES, EVERY_S = 5, 0.02  # a datagram may be lost
 
 
 def share(text):
@@ -42,11 +40,7 @@ def main():
     if arguments.keep:
         publish("CONTROL", lambda _t: message, arguments.lcm_url)
         return
-    network = connect(arguments.lcm_url)
-    for _ in range(TIMES):
-        message.utime = int(time.time() * 1e6)
-        network.publish("CONTROL", message.encode())
-        time.sleep(EVERY_S)
+    publish_once("CONTROL", message, arguments.lcm_url)
 
 
 if __name__ == "__main__":

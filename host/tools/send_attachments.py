@@ -7,14 +7,12 @@ object, approach it, hold it with its id still allowed, carry it, put it down, a
 left.
 """
 import argparse
-import time
 
-from wire import add_lcm_url, attachments_t, command_line, connect, finite, obstacle_t
+from wire import add_lcm_url, attachments_t, command_line, finite, obstacle_t, publish_once
 
 SIZES = {"sphere": (obstacle_t.SPHERE, "RADIUS"), "capsule": (obstacle_t.CAPSULE, "RADIUS,LENGTH"),
          "box": (obstacle_t.BOX, "X,Y,Z"), "cylinder": (obstacle_t.CYLINDER, "RADIUS,HEIGHT")}
 MOST_SHAPES, MOST_ALLOWED = 16, 64  # the controller rejects a message with more
-TIMES, EVERY_S = 5, 0.02  # a datagram may be lost
 
 
 def held(text):
@@ -58,11 +56,7 @@ def main():
     allowed = ", ".join(map(str, arguments.allow)) or "no obstacle"
     shapes = {0: "nothing", 1: "1 shape"}.get(len(arguments.hold), f"{len(arguments.hold)} shapes")
     print(f"sending on ATTACHMENTS: the tool holds {shapes} and may touch {allowed}", flush=True)
-    network = connect(arguments.lcm_url)
-    for _ in range(TIMES):
-        message.utime = int(time.time() * 1e6)
-        network.publish("ATTACHMENTS", message.encode())
-        time.sleep(EVERY_S)
+    publish_once("ATTACHMENTS", message, arguments.lcm_url)
 
 
 if __name__ == "__main__":

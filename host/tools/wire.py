@@ -45,6 +45,15 @@ def handle_messages(network, limit_s=None):
     return came
 
 
+def publish_once(channel, message, lcm_url):
+    """Publishes one message, five times within 0.1 s: a datagram may be lost."""
+    network = connect(lcm_url)
+    for _ in range(5):
+        message.utime = int(time.time() * 1e6)
+        network.publish(channel, message.encode())
+        time.sleep(0.02)
+
+
 def publish(channel, message_at, lcm_url):
     """Publishes message_at(seconds since the start) on a channel, 50 times a second, until Ctrl-C."""
     network, start = connect(lcm_url), time.time()

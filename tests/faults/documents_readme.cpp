@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
-#include "tests/support/check.h"
-#include "tests/support/process.h"
+#include "tests/support/python_check.h"
 #include "tests/support/scratch.h"
-
-using sidestep::test::Process;
 
 namespace {
 
 void passes(const char* name) {
-  Process python({"build/venv/bin/python", "tests/support/readme_check.py", name});
-  const int code = python.wait(110.0);
-  check(code == 0, "%s: %s", name, python.output().c_str());
+  sidestep::test::require_python_check("readme_check.py", name, 110.0);
 }
 
 void a_moving_picture_says_what_the_run_did(void**) {

@@ -1,16 +1,11 @@
 // The page that host/tools/report.py makes of a log.
 
-#include "tests/support/check.h"
-#include "tests/support/process.h"
-
-using sidestep::test::Process;
+#include "tests/support/python_check.h"
 
 namespace {
 
 void passes(const char* name) {
-  Process python({"build/venv/bin/python", "tests/support/report_check.py", name});
-  const int code = python.wait(60.0);
-  check(code == 0, "%s: %s", name, python.output().c_str());
+  sidestep::test::require_python_check("report_check.py", name);
 }
 
 void a_log_becomes_one_page_that_needs_no_network(void**) {

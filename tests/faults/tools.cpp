@@ -1,16 +1,11 @@
 // The scripts in host/tools.
 
-#include "tests/support/check.h"
-#include "tests/support/process.h"
-
-using sidestep::test::Process;
+#include "tests/support/python_check.h"
 
 namespace {
 
 void passes(const char* name) {
-  Process python({"build/venv/bin/python", "tests/support/tools_check.py", name});
-  const int code = python.wait(60.0);
-  check(code == 0, "%s: %s", name, python.output().c_str());
+  sidestep::test::require_python_check("tools_check.py", name);
 }
 
 void sent_velocities_are_the_derivatives_of_sent_positions(void**) {

@@ -2,51 +2,20 @@
 
 #include <cstring>
 
-#include "firmware/model/prediction.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
-#include "tests/support/closed_loop.h"
-#include "tests/support/lwa3.h"
+#include "tests/support/foresight_loop.h"
 
 using namespace sidestep;
 using test::ClosedLoop;
 
 namespace {
 
-/// The closed loop with foresight, which runs within the cycle, as in lockstep.
-struct ForesightLoop {
-  ClosedLoop loop;
-  std::unique_ptr<Foresight> foresight;
-  std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();
-  const Guide* guide = nullptr;
-  double least_m = 1.0;
+/// The arm at home, with and without foresight.
+struct World : test::ForesightLoop {
+  World(const Vector3& target_m, bool enabled)
+      : ForesightLoop(test::point_target(target_m), test::home_rad(), "sidestep", enabled) {}
 
-  ForesightLoop(const Vector3& target_m, bool enabled) : loop(test::lwa3_model("sidestep"), test::home_rad()) {
-    loop.model.settings.foresight.enabled = enabled;
-    loop.target.position_m = target_m;
-    loop.sends_target = true;
-    if (enabled) foresight = std::make_unique<Foresight>(loop.model);
-  }
-
-  void cycle() {
-    Inputs inputs = loop.receive();
-    inputs.guide = guide;
-    const Result result = step(loop.model, loop.state, inputs, loop.now_s());
-    loop.follow(result);
-    if (foresight) {
-      take_snapshot(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
-      guide = &foresight->update(*snapshot);
-    }
-    const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
-    least_m = std::min(least_m, clearance_after(loop.model.arm, poses, loop.obstacles->obstacles.data(),
-                                                loop.obstacles->count, 0.0, 1.0));
-  }
-  void run(double duration_s) {
-    for (int i = 0; i < std::lround(duration_s * 100); ++i) cycle();
-  }
-  double error_m() const {
-    return (forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position - loop.target.position_m).norm();
-  }
   /// A horizontal bar and a vertical post below it, both across the straight path of the forearm.
   void add_bar() {
     for (int i = 0; i < 9; ++i) loop.add_sphere(Vector3(0.32, -0.28 + 0.07 * i, 0.72), Vector3::Zero(), 0.07);
@@ -57,7 +26,7 @@ struct ForesightLoop {
 const Vector3 kBehindTheBar(0.62, 0.0, 0.62);
 
 void the_arm_arrives_behind_a_bar_that_blocks_the_direct_path(void**) {
-  ForesightLoop world(kBehindTheBar, true);
+  World world(kBehindTheBar, true);
   world.add_bar();
   bool guided = false;
   for (int i = 0; i < 1200; ++i) {
@@ -71,7 +40,7 @@ void the_arm_arrives_behind_a_bar_that_blocks_the_direct_path(void**) {
 }
 
 void without_foresight_the_arm_keeps_clear_of_the_bar(void**) {
-  ForesightLoop world(kBehindTheBar, false);
+  World world(kBehindTheBar, false);
   world.add_bar();
   world.run(12.0);
   check(world.least_m > 0.01, "%g m", world.least_m);
@@ -79,7 +48,7 @@ void without_foresight_the_arm_keeps_clear_of_the_bar(void**) {
 }
 
 void there_is_no_guide_where_the_law_arrives_without_one(void**) {
-  ForesightLoop world(Vector3(-0.328, 0.15, 0.8), true);
+  World world(Vector3(-0.328, 0.15, 0.8), true);
   for (int i = 0; i < 400; ++i) {
     world.cycle();
     check(!world.guide || world.guide->knots == 0, "a guide at cycle %d", i);
@@ -90,7 +59,7 @@ void there_is_no_guide_where_the_law_arrives_without_one(void**) {
 }
 
 void the_same_inputs_give_the_same_guides(void**) {
-  ForesightLoop one(kBehindTheBar, true), other(kBehindTheBar, true);
+  World one(kBehindTheBar, true), other(kBehindTheBar, true);
   one.add_bar();
   other.add_bar();
   int guided = 0;
@@ -109,7 +78,7 @@ void the_same_inputs_give_the_same_guides(void**) {
 }
 
 void guides_keep_the_joint_limits(void**) {
-  ForesightLoop world(kBehindTheBar, true);
+  World world(kBehindTheBar, true);
   world.add_bar();
   const JointLimits& limits = world.loop.model.arm.limits;
   int points = 0;
@@ -128,7 +97,7 @@ void guides_keep_the_joint_limits(void**) {
 }
 
 void a_blocked_guide_is_dropped_within_100_ms(void**) {
-  ForesightLoop world(kBehindTheBar, true);
+  World world(kBehindTheBar, true);
   world.add_bar();
   int cycles = 0;
   while ((!world.guide || world.guide->knots < 2) && ++cycles < 500) world.cycle();
@@ -143,7 +112,7 @@ void a_blocked_guide_is_dropped_within_100_ms(void**) {
 }
 
 void the_status_is_waiting_if_the_target_is_unreachable(void**) {
-  ForesightLoop world(Vector3(2.0, 0.0, 0.5), true);
+  World world(Vector3(2.0, 0.0, 0.5), true);
   world.run(4.0);
   assert_int_equal(static_cast<int>(world.loop.last.report.foresight_status),
                    static_cast<int>(ForesightStatus::kWaiting));
@@ -151,7 +120,7 @@ void the_status_is_waiting_if_the_target_is_unreachable(void**) {
 }
 
 void foresight_does_not_allocate(void**) {
-  ForesightLoop world(kBehindTheBar, true);
+  World world(kBehindTheBar, true);
   world.add_bar();
   world.run(0.7);
   const int64_t before = test::allocation_count();

@@ -2,17 +2,15 @@
 
 #include <set>
 
-#include "firmware/foresight/foresight.h"
 #include "firmware/model/link_proximity.h"
-#include "firmware/model/prediction.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
-#include "tests/support/closed_loop.h"
-#include "tests/support/lwa3.h"
+#include "tests/support/foresight_loop.h"
 #include "tests/support/random.h"
 
 using namespace sidestep;
 using test::ClosedLoop;
+using test::point_target;
 using test::Random;
 
 namespace {
@@ -23,49 +21,11 @@ Target posture(const JointVector& q_rad) {
   return target;
 }
 
-Target point(const Vector3& position_m) {
-  Target target;
-  target.position_m = position_m;
-  return target;
-}
+/// With what tells whether the arm is in a posture and moves.
+struct World : test::ForesightLoop {
+  using ForesightLoop::ForesightLoop;
 
-/// The LWA3 in a closed loop, with foresight within the cycle, as in lockstep.
-struct World {
-  ClosedLoop loop;
-  std::unique_ptr<Foresight> foresight;
-  std::unique_ptr<Snapshot> snapshot = std::make_unique<Snapshot>();
-  const Guide* guide = nullptr;
-  double least_m = 1.0;
-
-  explicit World(const Target& target, const JointVector& start_rad = test::home_rad(),
-                 const std::string& law = "sidestep")
-      : loop(test::lwa3_model(law), start_rad) {
-    loop.target = target;
-    loop.sends_target = true;
-    if (loop.model.settings.foresight.enabled) foresight = std::make_unique<Foresight>(loop.model);
-  }
-
-  void cycle() {
-    Inputs inputs = loop.receive();
-    inputs.guide = guide;
-    loop.follow(step(loop.model, loop.state, inputs, loop.now_s()));
-    if (foresight) {
-      take_snapshot(loop.model, inputs, loop.state, loop.now_s(), *snapshot);
-      guide = &foresight->update(*snapshot);
-    }
-    least_m = std::min(least_m, clearance_m(loop.arm.position_rad));
-  }
-  void run(double duration_s) {
-    for (int i = 0; i < std::lround(duration_s * 100); ++i) cycle();
-  }
-  double clearance_m(const JointVector& q_rad) const {
-    const LinkPoses poses = forward_kinematics(loop.model.arm, q_rad);
-    return clearance_after(loop.model.arm, poses, loop.obstacles->obstacles.data(), loop.obstacles->count, 0.0, 1.0);
-  }
   double error_rad() const { return (loop.arm.position_rad - loop.target.posture_rad).cwiseAbs().maxCoeff(); }
-  double error_m() const {
-    return (forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position - loop.target.position_m).norm();
-  }
   /// The fastest joint in the coming seconds, rad/s.
   double fastest_radps(double duration_s) {
     double fastest = 0.0;
@@ -212,14 +172,14 @@ void spheres_that_come_at_the_arm_do_not_touch_it_on_its_way_to_a_posture(void**
 
 void switching_between_postures_and_positions_never_makes_the_commands_jump(void**) {
   Random random(4);
-  World world(point(Vector3(-0.328, 0.15, 0.8)));
+  World world(point_target(Vector3(-0.328, 0.15, 0.8)));
   int postures = 0;
   for (int change = 0; change < 60; ++change) {
     const bool is_posture = random.chance(0.5);
     postures += is_posture;
-    world.loop.target = is_posture
-                            ? posture(free_configuration(world, random))
-                            : point(forward_kinematics(test::lwa3(), free_configuration(world, random)).tool_position);
+    world.loop.target =
+        is_posture ? posture(free_configuration(world, random))
+                   : point_target(forward_kinematics(test::lwa3(), free_configuration(world, random)).tool_position);
     world.run(random.uniform(0.02, 1.0));
     test::check_stream(world.loop);
   }
@@ -227,7 +187,7 @@ void switching_between_postures_and_positions_never_makes_the_commands_jump(void
   world.loop.target = posture(test::home_rad());
   world.run(8.0);
   check(world.error_rad() < 1e-4, "%g rad", world.error_rad());
-  world.loop.target = point(Vector3(-0.328, 0.15, 0.8));
+  world.loop.target = point_target(Vector3(-0.328, 0.15, 0.8));
   world.run(4.0);
   check(world.error_m() < 1e-3, "%g m", world.error_m());
   test::check_stream(world.loop);
@@ -296,10 +256,10 @@ void a_posture_outside_the_limits_counts_as_the_nearest_one_within(void**) {
 /// 900 m is farther than the arm is long. The stretched arm cannot turn its tool round.
 void a_tool_target_out_of_reach_is_said_to_be_so(void**) {
   const LinkPoses stretched = forward_kinematics(test::lwa3(), JointVector::Zero(7));
-  Target turned = point(0.97 * stretched.tool_position);
+  Target turned = point_target(0.97 * stretched.tool_position);
   turned.tracks_orientation = true;
   turned.orientation = Quaternion(stretched.tool_rotation) * Quaternion(Eigen::AngleAxisd(M_PI, Vector3::UnitX()));
-  for (const Target& target : {point(Vector3(0, 900, 0)), turned}) {
+  for (const Target& target : {point_target(Vector3(0, 900, 0)), turned}) {
     World world(target);
     world.run(6.0);
     check(world.loop.reports("out of reach"), "%g: %s", target.position_m.y(), world.loop.last.report.message);
@@ -310,7 +270,7 @@ void a_tool_target_out_of_reach_is_said_to_be_so(void**) {
     }
     assert_int_equal(messages.size(), 1);
     test::check_stream(world.loop);
-    world.loop.target = point(Vector3(-0.328, 0.15, 0.8));
+    world.loop.target = point_target(Vector3(-0.328, 0.15, 0.8));
     world.run(0.1);
     assert_string_equal(world.loop.last.report.message, "tracking");
   }
@@ -321,7 +281,7 @@ void a_target_within_reach_is_never_said_to_be_out_of_reach(void**) {
   for (int trial = 0; trial < 20; ++trial) {
     World world(posture(test::home_rad()));
     if (trial % 2) add_furniture(world, random);
-    world.loop.target = point(forward_kinematics(test::lwa3(), free_configuration(world, random)).tool_position);
+    world.loop.target = point_target(forward_kinematics(test::lwa3(), free_configuration(world, random)).tool_position);
     if (world.clearance_m(world.loop.arm.position_rad) < 0.02) continue;
     for (int i = 0; i < 400; ++i) {
       world.cycle();

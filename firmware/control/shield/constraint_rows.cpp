@@ -109,16 +109,15 @@ class RowMaker {
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
     const BodyShape &a = shape(self.first), &b = shape(self.second);
-    const auto& links = input_.clearance.links;
-    const Proximity pair =
-        measure_pair(PosedShape{a, input_.poses, links[self.first]}, PosedShape{b, input_.poses, links[self.second]});
+    const PosedShape first{a, input_.poses, input_.clearance.links[self.first]};
+    const PosedShape second{b, input_.poses, input_.clearance.links[self.second]};
+    const Proximity pair = measure_pair(first, second);
     const JointVector row =
         axes_.row(a.body, pair.on_arm, pair.normal) - axes_.row(b.body, pair.on_obstacle, pair.normal);
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
     const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
                                       pair.normal.dot(closing_mps));
-    add_turning(self, pair, PosedShape{a, input_.poses, links[self.first]},
-                PosedShape{b, input_.poses, links[self.second]});
+    add_turning(self, pair, first, second);
     rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
     const double room_m = pair.distance_m - self.clearance_m;
     if (!(room_m < least_room_m_)) return;
@@ -129,11 +128,12 @@ class RowMaker {
   void add_distance(const NearPair& pair) {
     const double distance_m = pair.now.distance_m;
     const bool separates = input_.person_weight > 0.0 && is_person(pair);
-    if (separates) add_separation(pair);
-    if (distance_m > settings_.range_m) return;
+    if (distance_m > settings_.range_m && !separates) return;
     const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
     const double least = least_mps(row, sustainable_);
     const double approaching_mps = pair.now.normal.dot(pair.velocity_mps);
+    if (separates) add_separation(row, least, approaching_mps, distance_m);
+    if (distance_m > settings_.range_m) return;
 
     // An obstacle that will pass clear of the link counts with a share of its speed only (constraint_rows.h).
     const double passing = std::clamp((pair.approach.distance_m - settings_.hard_clearance_m) /
@@ -144,19 +144,6 @@ class RowMaker {
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
-  }
-
-  /// In place of comfort for a person (constraint_rows.h).
-  void add_separation(const NearPair& pair) {
-    const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
-    const double most_mps = -least_mps(-row, sustainable_);
-    if (most_mps < kLeastSpeed_mps) return;
-    const double demand_mps = pair.now.normal.dot(pair.velocity_mps) +
-                              barrier(settings_.person_gain_per_s, pair.now.distance_m, settings_.person_clearance_m);
-    const double scale = std::sqrt(input_.person_weight / input_.comfort_weight) / most_mps;
-    const double bound_mps = std::min(demand_mps, most_mps);
-    if (bound_mps > least_mps(row, sustainable_))
-      add(sustainable_, scale * row, scale * bound_mps, Tier::kComfort, 0.0, rows_.plan);
   }
 
   void add_turning(const NearPair& pair) {
@@ -194,6 +181,17 @@ class RowMaker {
   }
 
  private:
+  /// In place of comfort for a person (constraint_rows.h). least: the least value of the row, m/s.
+  void add_separation(const JointVector& row, double least, double approaching_mps, double distance_m) {
+    const double most_mps = -least_mps(-row, sustainable_);
+    if (most_mps < kLeastSpeed_mps) return;
+    const double demand_mps =
+        approaching_mps + barrier(settings_.person_gain_per_s, distance_m, settings_.person_clearance_m);
+    const double bound_mps = std::min(demand_mps, most_mps);
+    const double scale = std::sqrt(input_.person_weight / input_.comfort_weight) / most_mps;
+    if (bound_mps > least) add(sustainable_, scale * row, scale * bound_mps, Tier::kComfort, 0.0, rows_.plan);
+  }
+
   /// Two links of which one turns past the other.
   void add_turning(const SelfPair& self, const Proximity& pair, const PosedShape& first, const PosedShape& second) {
     if (pair.distance_m > self.clearance_m + kNearLinks_m) return;

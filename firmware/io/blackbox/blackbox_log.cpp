@@ -75,12 +75,9 @@ class Log {
     write_new(is_joint_target({target.bytes, target.size}) ? channels_.joint_target : channels_.target,
               arguments.inputs.target, messages, RecordKind::kTarget);
     write_obstacles(arguments.inputs.obstacles, messages);
-    if (messages[static_cast<size_t>(RecordKind::kOtherJoints)].size > 0)
-      write_new(channels_.other_joints, arguments.inputs.other_joints, messages, RecordKind::kOtherJoints);
-    if (messages[static_cast<size_t>(RecordKind::kControl)].size > 0)
-      write_new(channels_.control, arguments.inputs.control, messages, RecordKind::kControl);
-    if (messages[static_cast<size_t>(RecordKind::kAttachments)].size > 0)
-      write_new(channels_.attachments, arguments.inputs.attachments, messages, RecordKind::kAttachments);
+    write_if_any(channels_.other_joints, arguments.inputs.other_joints, messages, RecordKind::kOtherJoints);
+    write_if_any(channels_.control, arguments.inputs.control, messages, RecordKind::kControl);
+    write_if_any(channels_.attachments, arguments.inputs.attachments, messages, RecordKind::kAttachments);
     StepArgumentsImage image;
     to_image(arguments, image);
     write(kStepArgumentsChannel, arguments.now_s, Packet{reinterpret_cast<const uint8_t*>(&image), sizeof image});
@@ -130,6 +127,13 @@ class Log {
     if (!take_new(latest, kind)) return;
     const Record& message = messages[static_cast<size_t>(kind)];
     write(channel, latest.received_s, Packet{message.bytes, message.size});
+  }
+
+  /// Of a kind that need not have been sent.
+  template <typename Message>
+  void write_if_any(const std::string& channel, const Latest<Message>& latest, const Messages& messages,
+                    RecordKind kind) {
+    if (messages[static_cast<size_t>(kind)].size > 0) write_new(channel, latest, messages, kind);
   }
 
   [[noreturn]] void fail() { throw std::runtime_error(fmt::format("{}: {}", file_, std::strerror(errno))); }

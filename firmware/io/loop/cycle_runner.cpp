@@ -7,6 +7,15 @@ namespace {
 
 constexpr double kRejectionShown_s = 5.0;
 
+/// An input that need not have been received: `latest` points at its copy in `kept`.
+template <typename Message>
+void keep_newest(const Received<Message>& received, Latest<Message>& latest, Message& kept) {
+  if (received.count == 0) return;
+  latest = received.latest();
+  kept = received.message;
+  latest.message = &kept;
+}
+
 }  // namespace
 
 CycleRunner::CycleRunner(const Config& config, Wire& wire, Blackbox& blackbox, ForesightThread& foresight_thread,
@@ -30,21 +39,9 @@ void CycleRunner::run(const LatestInputs& latest, const CycleTrigger& trigger) {
   arguments.now_s = trigger.now_s;
   arguments.inputs = {latest.arm.latest(),    latest.target.latest(), latest.obstacles.latest(),
                       trigger.skipped_cycles, trigger.stop,           trigger.foreign_command_s};
-  if (latest.other_joints.count > 0) {
-    arguments.inputs.other_joints = latest.other_joints.latest();
-    arguments.other_joints = latest.other_joints.message;
-    arguments.inputs.other_joints.message = &arguments.other_joints;
-  }
-  if (latest.attachments.count > 0) {
-    arguments.inputs.attachments = latest.attachments.latest();
-    arguments.attachments = latest.attachments.message;
-    arguments.inputs.attachments.message = &arguments.attachments;
-  }
-  if (latest.control.count > 0) {
-    arguments.inputs.control = latest.control.latest();
-    arguments.control = latest.control.message;
-    arguments.inputs.control.message = &arguments.control;
-  }
+  keep_newest(latest.other_joints, arguments.inputs.other_joints, arguments.other_joints);
+  keep_newest(latest.attachments, arguments.inputs.attachments, arguments.attachments);
+  keep_newest(latest.control, arguments.inputs.control, arguments.control);
   if (const Guide* guide = foresight_thread_.latest()) {
     arguments.guide = *guide;
     arguments.inputs.guide = &arguments.guide;

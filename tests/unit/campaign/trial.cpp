@@ -4,8 +4,10 @@
 #include "host/campaign/smoothness.h"
 #include "host/campaign/statistics.h"
 #include "tests/support/check.h"
+#include "tests/support/constant_controller.h"
 
 using namespace sidestep::campaign;
+using sidestep::test::ConstantController;
 
 namespace {
 
@@ -38,17 +40,6 @@ class WitnessController : public TrialController {
   int cycles_ = 0;
   PointMotion target_;
   sidestep::Vector3 sphere_m_;
-};
-
-/// Keeps the arm at rest.
-class IdleController : public TrialController {
- public:
-  ControllerOutput cycle(const ControllerInput&) override {
-    ControllerOutput output;
-    output.ready = true;
-    output.velocity_radps = Joints::Zero(7);
-    return output;
-  }
 };
 
 bool success(const Scene& scene, const TrialMetrics& metrics) {
@@ -93,7 +84,7 @@ void an_arm_at_rest_is_touched_in_every_dodge(void**) {
   for (const Family& family : families()) {
     for (uint64_t seed = 0; family.dodge && seed < kScenes; ++seed) {
       const Scene scene = make_scene(family, seed);
-      IdleController controller;
+      ConstantController controller(Joints::Zero(7));
       const TrialMetrics metrics = run_trial(scene, controller);
       check(metrics.clearance_m < -0.08, "%s:%d: %g m", family.name.c_str(), static_cast<int>(seed),
             metrics.clearance_m);
@@ -171,7 +162,7 @@ void an_arm_that_touches_itself_has_a_contact(void**) {
   Scene scene = make_scene(family_named("moving"), 5);
   scene.spheres.clear();
   FoldController fold;
-  IdleController idle;
+  ConstantController idle(Joints::Zero(7));
   const TrialMetrics folded = run_trial(scene, fold), at_rest = run_trial(scene, idle);
   check(folded.self_clearance_m < 0.0, "%g m", folded.self_clearance_m);
   check(at_rest.self_clearance_m > 0.0, "%g m", at_rest.self_clearance_m);

@@ -4,9 +4,11 @@
 #include "host/campaign/scene_maker.h"
 #include "host/campaign/trial.h"
 #include "tests/support/check.h"
+#include "tests/support/constant_controller.h"
 
 using namespace sidestep::campaign;
 using sidestep::Vector3;
+using sidestep::test::ConstantController;
 
 namespace {
 
@@ -67,33 +69,10 @@ void a_wall_that_stops_at_the_arm_can_be_fled_only_backward(void**) {
   assert_true(has_way_out(approached(3.0, true), at_rest(approached(3.0, true), 0)));
 }
 
-/// Swings the second joint toward the capsule.
-class TowardController : public TrialController {
- public:
-  ControllerOutput cycle(const ControllerInput&) override {
-    ControllerOutput output;
-    output.ready = true;
-    output.velocity_radps = Joints::Zero(7);
-    output.velocity_radps[1] = -0.3;
-    return output;
-  }
-};
-
-class IdleController : public TrialController {
- public:
-  ControllerOutput cycle(const ControllerInput&) override {
-    ControllerOutput output;
-    output.ready = true;
-    output.velocity_radps = Joints::Zero(7);
-    return output;
-  }
-};
-
 void an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest(void**) {
   Scene scene = approached(3.0, false);
   scene.capsules = {CapsulePath(0.05, 5.0, {{{0.4, -0.2, 0.9}, {0.4, 0.2, 0.9}}, {{0.4, -0.2, 0.9}, {0.4, 0.2, 0.9}}})};
-  TowardController toward;
-  IdleController idle;
+  ConstantController toward(-0.3 * Joints::Unit(7, 1)), idle(Joints::Zero(7));  // the second joint swings
   const TrialMetrics moved = run_trial(scene, toward), rested = run_trial(scene, idle);
   check_near(rested.clearance_m, 0.3, 1e-9);
   check_near(rested.rest_clearance_m, rested.clearance_m, 1e-9);
