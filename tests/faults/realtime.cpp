@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 
 #include "tests/support/check.h"
@@ -16,6 +17,12 @@ namespace {
 
 using Status = controller_status_t;
 const char* const kLaws[] = {"paper", "sidestep"};
+
+bool has_braked_because(const LiveArm& arm, const char* reason) {
+  return std::any_of(arm.peer.statuses.begin(), arm.peer.statuses.end(), [&](const Status& status) {
+    return status.mode == Status::BRAKE && status.message.find(reason) != std::string::npos;
+  });
+}
 
 /// Skipped cycles are counted with the others, so that a busy machine does not change the rate.
 void the_loop_holds_its_rate(void**) {
@@ -54,10 +61,7 @@ void missing_arm_states_brake_and_then_are_a_fault(void**) {
     Scene scene(law);
     scene.arm.sends_arm_state = false;
     scene.arm.run(1.0);
-    bool braked = false;
-    for (const Status& status : scene.arm.peer.statuses)
-      braked |= status.mode == Status::BRAKE && status.message.find("arm state is too old") != std::string::npos;
-    assert_true(braked);
+    assert_true(has_braked_because(scene.arm, "arm state is too old"));
     assert_true(scene.arm.status().mode == Status::FAULT && scene.arm.reports("no arm state"));
     assert_int_equal(scene.arm.status().fault, Status::FAULT_ARM_STATE_LOST);
     check_near(scene.arm.speed_radps(), 0.0, 0);
@@ -71,8 +75,8 @@ void old_obstacles_brake_and_an_old_target_leads_to_hold(void**) {
   Scene scene("sidestep");
   scene.arm.sends_obstacles = false;
   assert_true(scene.arm.run_until(Status::BRAKE, 1.0));
-  assert_true(scene.arm.reports("obstacles are too old"));
   scene.arm.run(0.5);
+  assert_true(has_braked_because(scene.arm, "obstacles are too old"));
   check_near(scene.arm.speed_radps(), 0.0, 0);
   scene.arm.sends_obstacles = true;
   assert_true(scene.arm.run_until(Status::TRACK, 1.0));

@@ -37,12 +37,12 @@ int64_t LiveArm::silent_between(int64_t one, int64_t other) const {
   });
 }
 
-/// Brakes for one tick; the next command must continue from there.
+/// Brakes for one tick.
 void LiveArm::stop_by_itself() {
   const double tick_s = std::chrono::duration<double>(kPeriod).count();
   velocity_radps_ = brake(limits_, velocity_radps_, tick_s);
   position_rad_ += velocity_radps_ * tick_s;
-  commands.begin(position_rad_, velocity_radps_);
+  stopped_by_itself_ = true;
 }
 
 /// Moves the arm to the last commanded position.
@@ -52,6 +52,11 @@ void LiveArm::follow() {
     const joint_command_t& command = peer.commands[followed_];
     const int64_t before = followed_ > 0 ? peer.commands[followed_ - 1].seq : command.seq - 1;
     const int64_t lost = command.seq - before - 1 - silent_between(before, command.seq);
+    const bool in_time =
+        followed_ > 0 && command.seq == before + 1 &&
+        command.utime - peer.commands[followed_ - 1].utime < kTicksToWait * kPeriod / std::chrono::microseconds(1);
+    if (stopped_by_itself_ && !in_time) commands.begin(position_rad_, velocity_radps_);
+    stopped_by_itself_ = false;
     position_rad_ = to_joints(command.joint_position);
     velocity_radps_ = to_joints(command.joint_velocity);
     lost_ += lost;

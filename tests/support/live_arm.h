@@ -9,7 +9,9 @@
 namespace sidestep::test {
 
 /// Real-time model of an ideal arm, a target and an obstacle over LCM with 100 ticks a second. All commands are
-/// checked. Public members may be changed at any time. Without a command for five ticks the arm stops by itself.
+/// checked. Public members may be changed at any time. Without a command for five ticks the arm stops by itself. The
+/// next command must then continue from there, unless the controller had sent it in time: it continues the last
+/// command.
 class LiveArm {
  public:
   /// period_s: of the commands.
@@ -44,6 +46,7 @@ class LiveArm {
   std::chrono::steady_clock::time_point next_;
   size_t followed_ = 0;
   int ticks_without_command_ = 0;
+  bool stopped_by_itself_ = false;
   int64_t lost_ = 0;
 };
 
