@@ -33,6 +33,23 @@ void the_arm_makes_room_for_a_person_and_not_for_a_thing(void**) {
   assert_string_equal(person.commands.violation().c_str(), "");
 }
 
+/// S = person_clearance + v / person_gain. Until then the shield does not correct the law.
+void the_arm_gives_way_from_the_protective_distance_on(void**) {
+  for (const double speed_mps : {0.2, 0.5, 1.0, 2.0}) {
+    ClosedLoop loop = beside(Kind::kPerson);
+    Obstacle& person = loop.obstacles->obstacles[0];
+    const Vector3 outward = (person.capsule.start - loop.target.position_m).normalized();
+    person.capsule.start = person.capsule.end = loop.target.position_m + 2.5 * outward;
+    loop.run(3.0);
+    person.velocity_mps = -speed_mps * outward;
+    while (loop.now_s() < 30.0 && loop.last.report.shield_correction_radps < 0.005) loop.cycle();
+    const ShieldSettings& shield = loop.model.settings.shield;
+    const double protective_m = shield.person_clearance_m + speed_mps / shield.person_gain_per_s;
+    const double period_m = speed_mps * loop.model.settings.period_s();
+    check_near_because(loop.last.report.clearance_m, protective_m, 0.01 + 2.0 * period_m, "%g m/s", speed_mps);
+  }
+}
+
 /// The joints change places in the null space of the task for a while, slowly.
 void an_arm_beside_a_person_who_rests_comes_to_rest_without_trembling(void**) {
   ClosedLoop loop = beside(Kind::kPerson);
@@ -79,6 +96,7 @@ void without_its_weight_there_is_no_separation(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_arm_makes_room_for_a_person_and_not_for_a_thing),
+      cmocka_unit_test(the_arm_gives_way_from_the_protective_distance_on),
       cmocka_unit_test(an_arm_beside_a_person_who_rests_comes_to_rest_without_trembling),
       cmocka_unit_test(the_target_is_reached_when_the_person_has_left),
       cmocka_unit_test(in_hold_a_person_does_not_drive_the_arm_away),

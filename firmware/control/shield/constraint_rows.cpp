@@ -187,8 +187,9 @@ class RowMaker {
     if (most_mps < kLeastSpeed_mps) return;
     const double demand_mps =
         approaching_mps + barrier(settings_.person_gain_per_s, distance_m, settings_.person_clearance_m);
-    const double bound_mps = std::min(demand_mps, most_mps);
-    const double scale = std::sqrt(input_.person_weight / input_.comfort_weight) / most_mps;
+    const double touched_mps = settings_.person_gain_per_s * settings_.person_clearance_m;
+    const double bound_mps = std::min(demand_mps * std::min(1.0, most_mps / touched_mps), most_mps);
+    const double scale = std::sqrt(input_.person_weight / input_.comfort_weight);
     if (bound_mps > least) add(sustainable_, scale * row, scale * bound_mps, Tier::kComfort, 0.0, rows_.plan);
   }
 

@@ -30,9 +30,10 @@ namespace sidestep {
 /// comfort:
 ///     b = v - comfort_gain (d - comfort_clearance)
 /// separation, in place of comfort for a person in TRACK; with the largest speed a_max = max a q' over the range:
-///     b = min(v - person_gain (d - person_clearance), a_max)
-///   The row and b are divided by a_max, so that the shared slack is a share of what each link can do: a link that can
-///   hardly leave takes no slack from the others. Both are multiplied by sqrt(person_weight / comfort_weight), so that
+///     b = min((v - person_gain (d - person_clearance)) min(1, a_max / v_0), a_max)
+///   v_0 = person_gain person_clearance is the demand at the touch of a person at rest. Slower links are asked for the
+///   same share of what they can do: a link that can hardly leave would otherwise use up the shared slack, and the
+///   others would not move either. The row and b are multiplied by sqrt(person_weight / comfort_weight), so that
 ///   person_weight takes the place of the weight of the tier.
 ///
 /// Every other b is capped at 3 m/s: penetration or a short time would demand more than any arm can do.
