@@ -17,6 +17,7 @@ InputGate::InputGate(const Arm& arm, const Settings& settings, InputSource sourc
     : arm_(arm),
       timeouts_(settings.timeouts),
       source_(source),
+      estimates_(settings.law != Law::kPaper),
       memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s),
       other_joints_(arm, settings.timeouts.obstacles_s) {}
 
@@ -57,15 +58,20 @@ Verdict InputGate::accept(Attachments& attachments, double now_s) {
   return kAccepted;
 }
 
+void InputGate::complete(ObstacleSet& obstacles, double elapsed_s, double now_s) {
+  if (estimates_) estimator_.complete(obstacles, elapsed_s);
+  memory_.add_remembered(obstacles, elapsed_s, now_s);
+}
+
 Verdict InputGate::accept(ObstacleSet& obstacles, int64_t utime, double now_s) {
   if (!sanitize(obstacles)) return rejected("obstacles with impossible values");
   if (source_ == InputSource::kRecording) return kAccepted;
   if (source_ == InputSource::kCalls) {
-    memory_.add_remembered(obstacles, now_s - memory_.last_set_s(now_s), now_s);
+    complete(obstacles, now_s - memory_.last_set_s(now_s), now_s);
     return kAccepted;
   }
   if (obstacles_order_.accept(utime, now_s, timeouts_.obstacles_s)) {
-    memory_.add_remembered(obstacles, obstacles_order_.elapsed_s(), now_s);
+    complete(obstacles, obstacles_order_.elapsed_s(), now_s);
     return kAccepted;
   }
   if (obstacles_order_.is_late(utime)) memory_.add_late_set(obstacles, timeouts_.obstacles_s, now_s);

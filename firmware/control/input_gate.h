@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/control/message_order.h"
+#include "firmware/control/motion_estimator.h"
 #include "firmware/control/obstacle_memory.h"
 #include "firmware/control/other_joint_memory.h"
 #include "firmware/control/types/inputs.h"
@@ -25,9 +26,10 @@ struct Verdict {
 };
 
 /// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
-/// messages (message_order.h) and adds remembered obstacles to an accepted set (obstacle_memory.h). A late obstacle set
-/// is dropped, but its obstacles enter the memory. (With neighbours no late set gets here: the merger drops them.) Does
-/// not throw and does not allocate. Large: lives on the heap.
+/// messages (message_order.h), gives obstacles without velocities estimated ones (motion_estimator.h) and adds
+/// remembered obstacles to an accepted set (obstacle_memory.h). A late obstacle set is dropped, but its obstacles enter
+/// the memory. (With neighbours no late set gets here: the merger drops them.) Does not throw and does not allocate.
+/// Large: lives on the heap.
 class InputGate {
  public:
   /// The arm outlives this.
@@ -45,6 +47,7 @@ class InputGate {
   Verdict accept(OtherJoints& joints, double now_s);
 
  private:
+  void complete(ObstacleSet& obstacles, double elapsed_s, double now_s);
   bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
 
   const Arm& arm_;
@@ -52,6 +55,8 @@ class InputGate {
   InputSource source_;
   MessageOrder arm_order_, target_order_, joint_target_order_, obstacles_order_, other_joints_order_, control_order_,
       attachments_order_;
+  bool estimates_;  ///< the paper's law takes velocities as they are reported
+  MotionEstimator estimator_;
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;
 };

@@ -64,11 +64,11 @@ class __attribute__((visibility("default"))) Controller {
     Shape shape = Shape::kSphere;
     Vector position_m{};                 ///< centre
     Quaternion orientation{1, 0, 0, 0};  ///< ignored for a sphere
-    Vector size_m{};  ///< sphere {radius}; along z: capsule {radius, distance of cap centres}, cylinder {radius,
-                      ///< height}; box {edge, edge, edge}
-    Vector velocity_mps{};
-    Vector angular_velocity_radps{};
-    bool is_person = false;  ///< keeps the full clearance also at rest
+    Vector size_m{};        ///< sphere {radius}; along z: capsule {radius, distance of cap centres}, cylinder {radius,
+                            ///< height}; box {edge, edge, edge}
+    Vector velocity_mps{};  ///< 0: at rest or unknown; an obstacle that moves gets an estimate
+    Vector angular_velocity_radps{};  ///< likewise
+    bool is_person = false;           ///< keeps the full clearance also at rest
   };
   /// An obstacle that is missing in the new set is remembered for timeouts.coast_s and extrapolated with its velocity.
   /// Returns false and keeps the previous set when a number is implausible or there are too many obstacles.

@@ -34,7 +34,7 @@ struct Options {
   int obstacles = 3;
   double fastest_mps = 0.5;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool quiet = false, smoothness = false, no_cpu = false, resume = false;
+  bool quiet = false, smoothness = false, no_cpu = false, resume = false, no_velocities = false;
   std::vector<std::string> merge;
 };
 
@@ -60,6 +60,7 @@ void declare(CommandLine& app, Options& options) {
       .type_name("FILE");
   app.add_option("--base", options.base, "first link of the arm").type_name("LINK");
   app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
+  app.add_flag("--no-velocities", options.no_velocities, "report obstacles to the controller without their velocities");
   app.add_option("--shard", options.shard, "run only every N-th scene (or chain of a search), starting at the I-th")
       .show_default()
       .type_name("I/N");
@@ -156,7 +157,8 @@ int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
-  const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm};
+  const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm,
+                                !options.no_velocities};
   const std::vector<Row> rows = run_and_record(tasks, tested, options);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;

@@ -13,7 +13,8 @@ namespace sidestep::campaign {
 namespace {
 
 Row trial(const Task& task, const TestedController& tested, const Model* model) {
-  const Scene scene = make_scene(*task.family, task.seed, tested.arm);
+  Scene scene = make_scene(*task.family, task.seed, tested.arm);
+  scene.reports_velocities = tested.velocities;
   const std::unique_ptr<TrialController> controller =
       make_controller(model, tested.arm, tested.arm.limits(*task.family));
   return {task.family, tested.law, task.seed, run_trial(scene, *controller)};

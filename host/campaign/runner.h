@@ -23,6 +23,7 @@ struct TestedController {
   std::string law;     ///< name in the tables
   const Model* model;  ///< null: plain tracking
   const JudgeArm& arm = lwa3_arm();
+  bool velocities = true;  ///< of the obstacles are reported to it
 };
 
 /// Runs all tasks on `jobs` threads. The rows are in the order of the tasks and, except for CPU times, do not depend on

@@ -35,6 +35,7 @@ struct Scene {
   double crossing_s = 0.0;               ///< dodge: the time at which the spheres reach the arm's start configuration
   std::vector<CapsulePath> capsules;     ///< of persons
   std::vector<sim::Obstacle> furniture;  ///< boxes and cylinders at rest
+  bool reports_velocities = true;        ///< of obstacles; false: the controller receives zeros
   bool goal_has_orientation = false;     ///< furniture: the goal is also the tool's orientation at goal_rad
   /// People: the target is first the tool's position at the goal, then changes moves - 1 times between those at start
   /// and goal, each time after this duration.

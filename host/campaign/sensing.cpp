@@ -21,26 +21,35 @@ Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.s
 
 const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
   if (!scene_.family->real && !scene_.family->camera) {
-    report_exactly(now_us, t_s);
+    receive(exact(now_us, t_s));
     return newest_;
   }
   for (int64_t at_us; (at_us = next_capture_ * 1'000'000 / kRate_hz) <= now_us; ++next_capture_)
     capture(at_us, t_s - static_cast<double>(now_us - at_us) / 1e6);
   while (!in_transit_.empty() && in_transit_.front().received_us <= now_us) {
-    in_transit_.front().count = newest_.count + 1;
-    newest_ = std::move(in_transit_.front());
+    receive(std::move(in_transit_.front()));
     in_transit_.pop_front();
   }
   return newest_;
 }
 
-void Sensing::report_exactly(int64_t now_us, double t_s) {
-  newest_.received_us = now_us;
-  ++newest_.count;
-  newest_.obstacles.clear();
-  for (const SpherePath& sphere : scene_.spheres) newest_.obstacles.push_back(moving_sphere(sphere.at(t_s)));
-  for (const CapsulePath& capsule : scene_.capsules) newest_.obstacles.push_back(person_obstacle(capsule.at(t_s)));
-  for (const sim::Obstacle& solid : scene_.furniture) newest_.obstacles.push_back(reported(solid));
+void Sensing::receive(ObstacleMeasurement measurement) {
+  measurement.count = newest_.count + 1;
+  newest_ = std::move(measurement);
+  if (scene_.reports_velocities) return;
+  for (Obstacle& obstacle : newest_.obstacles) {
+    obstacle.velocity_mps.setZero();
+    obstacle.angular_velocity_radps.setZero();
+  }
+}
+
+ObstacleMeasurement Sensing::exact(int64_t now_us, double t_s) const {
+  ObstacleMeasurement measurement;
+  measurement.received_us = now_us;
+  for (const SpherePath& sphere : scene_.spheres) measurement.obstacles.push_back(moving_sphere(sphere.at(t_s)));
+  for (const CapsulePath& capsule : scene_.capsules) measurement.obstacles.push_back(person_obstacle(capsule.at(t_s)));
+  for (const sim::Obstacle& solid : scene_.furniture) measurement.obstacles.push_back(reported(solid));
+  return measurement;
 }
 
 void Sensing::capture(int64_t at_us, double t_s) {

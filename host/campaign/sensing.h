@@ -18,7 +18,8 @@ struct ObstacleMeasurement {
 };
 
 /// Model of the obstacle sensor. Family real: 30 sets a second, 40 ms old, positions with noise, one set in ten is
-/// lost. Families with a camera: people/camera.h. Other families: the exact set in every cycle.
+/// lost. Families with a camera: people/camera.h. Other families: the exact set in every cycle. Velocities only if the
+/// scene reports them.
 class Sensing {
  public:
   explicit Sensing(const Scene& scene);
@@ -28,8 +29,9 @@ class Sensing {
   const ObstacleMeasurement& newest_at(int64_t now_us, double t_s);
 
  private:
-  void report_exactly(int64_t now_us, double t_s);
+  ObstacleMeasurement exact(int64_t now_us, double t_s) const;
   void capture(int64_t at_us, double t_s);
+  void receive(ObstacleMeasurement measurement);
   void capture_spheres(int64_t at_us, double t_s);
   void capture_people(int64_t at_us, double t_s);
 

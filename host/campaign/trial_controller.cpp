@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "firmware/base/realtime.h"
+#include "firmware/control/motion_estimator.h"
 #include "firmware/foresight/foresight.h"
 #include "host/campaign/plain_tracking.h"
 
@@ -18,7 +19,10 @@ constexpr int kRepeats = 2;
 class StepController : public TrialController {
  public:
   explicit StepController(const Model& model)
-      : model_(model), obstacles_(std::make_unique<ObstacleSet>()), foresight_(model) {}
+      : model_(model),
+        obstacles_(std::make_unique<ObstacleSet>()),
+        estimator_(std::make_unique<MotionEstimator>()),
+        foresight_(model) {}
 
   ControllerOutput cycle(const ControllerInput& input) override {
     const double now_s = static_cast<double>(input.now_us) * 1e-6;
@@ -80,6 +84,8 @@ class StepController : public TrialController {
       obstacles_->obstacles[i] = measurement.obstacles[i];
       obstacles_->obstacles[i].id = static_cast<int32_t>(i);
     }
+    estimator_->complete(*obstacles_, static_cast<double>(measurement.received_us - obstacles_us_) * 1e-6);
+    obstacles_us_ = measurement.received_us;
   }
 
   const Model& model_;
@@ -87,11 +93,12 @@ class StepController : public TrialController {
   ArmState arm_;
   Target target_;
   std::unique_ptr<ObstacleSet> obstacles_;
+  std::unique_ptr<MotionEstimator> estimator_;
   Foresight foresight_;
   Snapshot snapshot_;
   const Guide* guide_ = nullptr;
   int64_t cycles_ = 0;
-  int64_t obstacles_count_ = 0;
+  int64_t obstacles_count_ = 0, obstacles_us_ = 0;
   double worst_s_ = 0.0;
 };
 

@@ -14,6 +14,7 @@ class Random {
   explicit Random(unsigned seed) : engine_(seed) {}
 
   double uniform(double lower, double upper) { return std::uniform_real_distribution<double>(lower, upper)(engine_); }
+  double normal() { return std::normal_distribution<double>()(engine_); }
   int index(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
   bool chance(double probability) { return uniform(0, 1) < probability; }
   uint64_t bits() { return engine_(); }
