@@ -12,8 +12,9 @@ namespace sidestep {
 /// (path_timing.h).
 ///
 /// The work is cut into slices, one per call of plan(): about kChecksPerSlice configurations are examined. What a slice
-/// has found is kept for the next one while the target and the obstacles at rest stay where they are. Large: lives on
-/// the heap.
+/// has found is kept for the next one while the target and the obstacles at rest stay where they are. Trees that have
+/// not met after 30 slices are given up, for new ones with other goals and twice as much time: the way may be closed to
+/// all goals of the first ones. Large: lives on the heap.
 class TreePlanner {
  public:
   explicit TreePlanner(const Model& model);
@@ -46,6 +47,7 @@ class TreePlanner {
 
   bool is_current(const Snapshot& now) const;
   void begin(const Snapshot& from);
+  void begin_anew(const Snapshot& from);
   void find_goals();
   void grow();
   void clear_trees();
@@ -69,6 +71,8 @@ class TreePlanner {
   BoundedList<JointVector, kMaxGoals> goals_rad_;
   Tree trees_[2];        ///< from the arm and from the goals
   int checks_left_ = 0;  ///< of this slice
+  int slices_left_ = 0;  ///< until the trees are given up
+  int patience_ = 0;     ///< slices that the present trees were given
   JointPath path_;       ///< from the arm to a goal, once the trees have met
   int pruned_ = 0;       ///< up to this point of the path no corner can be left out
   int shortcuts_left_ = 0;

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "firmware/io/config/config.h"
 #include "firmware/model/link_proximity.h"
 #include "firmware/model/prediction.h"
 #include "tests/support/check.h"
@@ -144,6 +145,35 @@ void a_target_that_moves_has_no_plan(void**) {
   assert_int_equal(plan(*planner, *snapshot, 50).knots, 0);
 }
 
+/// The hand reaches into an open box. With 1 % of the seeds no way leads from the arm to any of the first goals.
+void a_search_whose_goals_are_cut_off_goes_on_with_others(void**) {
+  Snapshot snapshot;
+  snapshot.moves = snapshot.tracking = true;
+  const Matrix3 turn = Quaternion(0.737, 0, 0, 0.676).normalized().toRotationMatrix();
+  const auto add_board = [&](double x, double y, double z, const Vector3& size) {
+    add(snapshot, box_obstacle({x, y, z}, turn, size));
+  };
+  add_board(-0.084, 0.363, 0.012, {0.449, 0.375, 0.02});
+  add_board(-0.103, 0.149, 0.189, {0.02, 0.375, 0.333});
+  add_board(-0.065, 0.576, 0.189, {0.02, 0.375, 0.333});
+  add_board(0.093, 0.347, 0.189, {0.409, 0.02, 0.333});
+  add_board(-0.261, 0.378, 0.189, {0.409, 0.02, 0.333});
+  snapshot.arm.position_rad = JointVector(7);
+  snapshot.arm.position_rad << 1.819, -1.017, -0.674, -2.060, 1.087, 2.609, -1.871;
+  snapshot.arm.velocity_radps = JointVector::Zero(7);
+  snapshot.target.position_m = Vector3(-0.041, 0.385, 0.068);
+  snapshot.target.tracks_orientation = true;
+  snapshot.target.orientation = Quaternion(0.2565, -0.0881, 0.9572, -0.1012).normalized();
+  Model panda = load_config("firmware/config/panda.yaml", {}).model;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    panda.settings.foresight.seed = seed;
+    const auto planner = std::make_unique<TreePlanner>(panda);
+    int slices = 0;
+    while (slices < 150 && planner->plan(snapshot).knots == 0) ++slices;
+    check(slices < 150, "seed %d: %d slices", static_cast<int>(seed), slices);
+  }
+}
+
 /// A ball flies through the middle of the way while the arm would be there.
 void a_plan_lets_a_moving_obstacle_pass(void**) {
   Random random(4);
@@ -177,8 +207,11 @@ void a_plan_lets_a_moving_obstacle_pass(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
-      cmocka_unit_test(plans_are_free_and_end_at_the_target),  cmocka_unit_test(a_path_leads_through_a_window),
-      cmocka_unit_test(the_same_snapshots_give_the_same_plan), cmocka_unit_test(a_target_that_moves_has_no_plan),
+      cmocka_unit_test(plans_are_free_and_end_at_the_target),
+      cmocka_unit_test(a_path_leads_through_a_window),
+      cmocka_unit_test(the_same_snapshots_give_the_same_plan),
+      cmocka_unit_test(a_target_that_moves_has_no_plan),
+      cmocka_unit_test(a_search_whose_goals_are_cut_off_goes_on_with_others),
       cmocka_unit_test(a_plan_lets_a_moving_obstacle_pass),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
