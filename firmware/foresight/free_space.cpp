@@ -14,9 +14,7 @@ namespace {
 constexpr double kSamePlace_m = 0.002;
 
 bool rests(const Obstacle& obstacle) {
-  const double moves_mps = 0.05;
-  return obstacle.velocity_mps.norm() + obstacle.angular_velocity_radps.norm() * obstacle.capsule.extent_m() <
-         moves_mps;
+  return fastest_point_mps(obstacle) < kMoves_mps;
 }
 
 bool are_same(const Obstacle& a, const Obstacle& b) {

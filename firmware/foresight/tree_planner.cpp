@@ -63,10 +63,15 @@ bool TreePlanner::is_current(const Snapshot& now) const {
   return valid_ && is_same_goal(now.target, target_, model_.arm.joint_scale) && free_.is_current(now);
 }
 
+/// What is not exactly known needs the full clearance.
+double TreePlanner::rest_clearance_m() const {
+  const Settings& settings = model_.settings;
+  if (!is_exact(settings.obstacle_trust)) return settings.foresight.clearance_m;
+  return settings.shield.rest_clearance_m + kRestAllowance_m;
+}
+
 void TreePlanner::begin(const Snapshot& from) {
-  const bool exact = is_exact(model_.settings.obstacle_trust);
-  const double moving_m = model_.settings.foresight.clearance_m;
-  free_.set(from, moving_m, exact ? model_.settings.shield.rest_clearance_m + kRestAllowance_m : moving_m);
+  free_.set(from, model_.settings.foresight.clearance_m, rest_clearance_m());
   target_ = from.target;
   patience_ = slices_left_ = kFirstPatience_slices;
   start_rad_ = from.arm.position_rad;
@@ -199,19 +204,26 @@ void TreePlanner::try_shortcut() {
   if (free_.contains_way(from_rad, to_rad, checks_left_)) path_ = with_shortcut(path_, a, b + 1, {from_rad, to_rad});
 }
 
-/// Up to the horizon, obstacles that move or need the full clearance for another reason.
+/// Up to the horizon, of obstacles that move or turn, however slowly. They are required to be as far away as in
+/// required_clearance.h.
 bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) const {
+  const ForesightSettings& settings = model_.settings.foresight;
+  const double enough_m = settings.clearance_m;
   BoundedList<Obstacle, kMaxNearbyObstacles> movers;
-  for (int i = 0; i < from.nearby.count; ++i)
-    if (!from.nearby.obstacles[i].velocity_mps.isZero(0.0)) movers.add(from.nearby.obstacles[i]);
+  BoundedList<double, kMaxNearbyObstacles> allowance_m;
+  for (int i = 0; i < from.nearby.count; ++i) {
+    const Obstacle& obstacle = from.nearby.obstacles[i];
+    if (fastest_point_mps(obstacle) == 0.0) continue;
+    movers.add(obstacle);
+    allowance_m.add(enough_m - required_clearance_m(enough_m, rest_clearance_m(), obstacle));
+  }
   if (movers.size() == 0) return true;
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
-  const ForesightSettings& settings = model_.settings.foresight;
   for (int sample = 0; sample * kSampleEvery_s <= settings.horizon_s; ++sample) {
     const double after_s = sample * kSampleEvery_s;
     const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad, others);
-    if (clearance_after(model_.arm, poses, movers.begin(), movers.size(), after_s, settings.clearance_m) <
-        settings.clearance_m)
+    if (clearance_after(model_.arm, poses, movers.begin(), movers.size(), after_s, enough_m, allowance_m.begin()) <
+        enough_m)
       return false;
   }
   return true;

@@ -24,8 +24,8 @@ class TreePlanner {
 
   /// One slice, from a snapshot in TRACK. Returns a guide, with ForesightStatus::kGuided, in the slice that completes
   /// one; it starts with zero velocity, now or after a pause, ends at least 1 s before the horizon, and up to the
-  /// horizon moving obstacles, at their present velocities, stay foresight.clearance_m away. Else without knots, for
-  /// example while the target moves.
+  /// horizon obstacles that move or turn, at their present velocities, stay foresight.clearance_m away (slow ones less,
+  /// required_clearance.h). Else without knots, for example while the target moves.
   Guide plan(const Snapshot& from);
 
   /// Whether the posture of the target, in a snapshot in TRACK, is too near to an obstacle at rest or to the arm
@@ -46,6 +46,7 @@ class TreePlanner {
   enum class Extension { kTrapped, kAdvanced, kReached };
 
   bool is_current(const Snapshot& now) const;
+  double rest_clearance_m() const;
   void begin(const Snapshot& from);
   void begin_anew(const Snapshot& from);
   void find_goals();

@@ -1,16 +1,9 @@
 #include "firmware/control/shield/required_clearance.h"
 
 namespace sidestep {
-namespace {
-
-constexpr double kMoves_mps = 0.05;
-
-}  // namespace
-
 double doubt(const Obstacle& obstacle) {
   if (obstacle.kind == Kind::kPerson || obstacle.id <= kNeighbourIds) return 1.0;
-  const double turning_mps = obstacle.angular_velocity_radps.norm() * obstacle.capsule.extent_m();
-  return std::min(1.0, (obstacle.velocity_mps.norm() + turning_mps) / kMoves_mps);
+  return std::min(1.0, fastest_point_mps(obstacle) / kMoves_mps);
 }
 
 double hard_clearance_m(const ShieldSettings& settings, const ObstacleView& view, int obstacle, double link_mps) {

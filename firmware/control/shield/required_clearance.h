@@ -12,6 +12,12 @@ namespace sidestep {
 /// of another arm, and an obstacle that has grown because its position is uncertain always need the full clearance.
 
 constexpr double kFastLink_mps = 0.5;
+constexpr double kMoves_mps = 0.05;  ///< an obstacle whose fastest point is slower rests more or less
+
+/// Speed of the fastest point of an obstacle, m/s; an upper bound.
+inline double fastest_point_mps(const Obstacle& obstacle) {
+  return obstacle.velocity_mps.norm() + obstacle.angular_velocity_radps.norm() * obstacle.capsule.extent_m();
+}
 
 /// 0: the obstacle rests and is exactly known; 1: it needs the full clearance.
 double doubt(const Obstacle& obstacle);

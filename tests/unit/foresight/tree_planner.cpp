@@ -174,6 +174,14 @@ void a_search_whose_goals_are_cut_off_goes_on_with_others(void**) {
   }
 }
 
+void check_clear_in_time(const Snapshot& snapshot, const Guide& guide, const Obstacle& mover, int trial) {
+  for (double after_s = 0.0; after_s < model().settings.foresight.horizon_s; after_s += 0.06) {
+    const LinkPoses poses = forward_kinematics(lwa3(), point_of(guide, snapshot.now_s + after_s).position_rad);
+    const double clear_m = clearance_after(lwa3(), poses, &mover, 1, after_s, 1.0);
+    check(clear_m >= model().settings.foresight.clearance_m - 1e-9, "trial %d: %g m", trial, clear_m);
+  }
+}
+
 /// A ball flies through the middle of the way while the arm would be there.
 void a_plan_lets_a_moving_obstacle_pass(void**) {
   Random random(4);
@@ -194,13 +202,37 @@ void a_plan_lets_a_moving_obstacle_pass(void**) {
     ++blocked;
     if (guide.knots == 0) continue;
     ++found;
-    for (double after_s = 0.0; after_s < model().settings.foresight.horizon_s; after_s += 0.06) {
-      const LinkPoses poses = forward_kinematics(lwa3(), point_of(guide, snapshot->now_s + after_s).position_rad);
-      const double clear_m = clearance_after(lwa3(), poses, &ball, 1, after_s, 1.0);
-      check(clear_m >= model().settings.foresight.clearance_m - 1e-9, "trial %d: %g m", trial, clear_m);
-    }
+    check_clear_in_time(*snapshot, guide, ball, trial);
   }
   check(found * 2 > blocked, "%d of %d", found, blocked);
+}
+
+/// A board at rest beside the way turns into it while the arm would be there.
+void a_plan_lets_a_board_that_turns_on_the_spot_pass(void**) {
+  Random random(5);
+  int blocked = 0, found = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    const auto snapshot = random_world(random);
+    const auto planner = std::make_unique<TreePlanner>(model());
+    const Guide alone = plan(*planner, *snapshot);
+    if (alone.knots == 0) continue;
+    const double middle_s = 0.5 * (alone.end_s() - snapshot->now_s);
+    const LinkPoses there = forward_kinematics(lwa3(), point_of(alone, snapshot->now_s + middle_s).position_rad);
+    const double beside_m = 0.2;
+    const Vector3 axis = random.direction(), toward = axis.unitOrthogonal();
+    const Matrix3 then = Quaternion::FromTwoVectors(Vector3::UnitX(), toward).toRotationMatrix();
+    Obstacle board = box_obstacle(there.tool_position - beside_m * toward, Eigen::AngleAxisd(-M_PI / 2, axis) * then,
+                                  {0.5, 0.02, 0.02});
+    board.angular_velocity_radps = M_PI / 2 / middle_s * axis;
+    add(*snapshot, board);
+    planner->reset();
+    const Guide guide = plan(*planner, *snapshot);
+    ++blocked;
+    if (guide.knots == 0) continue;
+    ++found;
+    check_clear_in_time(*snapshot, guide, board, trial);
+  }
+  check(found * 3 > blocked, "%d of %d", found, blocked);
 }
 
 }  // namespace
@@ -213,6 +245,7 @@ int main() {
       cmocka_unit_test(a_target_that_moves_has_no_plan),
       cmocka_unit_test(a_search_whose_goals_are_cut_off_goes_on_with_others),
       cmocka_unit_test(a_plan_lets_a_moving_obstacle_pass),
+      cmocka_unit_test(a_plan_lets_a_board_that_turns_on_the_spot_pass),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
