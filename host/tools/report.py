@@ -29,9 +29,11 @@ def table(names, columns):
 
 def curves(run, config, robot):
     import timeline  # matplotlib takes a second, and tests of the arguments do without it
-    picture = timeline.svg(run, arm.limits(*robot, arm.section(config, "limits")))
+    drawn = timeline.draw(run, arm.limits(*robot, arm.section(config, "limits")))
     title = f"<h2>{html.escape(run.name)}</h2>" if run.name else ""
-    return f'{title}<img alt="curves over time" src="data:image/svg+xml;base64,{base64.b64encode(picture).decode()}">'
+    spans = " ".join(f"{number:.6g}" for number in (*drawn.span_s, *drawn.span))
+    return (f'{title}<div class="curves" data-spans="{spans}"><img alt="curves over time" '
+            f'src="data:image/svg+xml;base64,{base64.b64encode(drawn.svg).decode()}"><hr hidden></div>')
 
 
 def page(log, robots):

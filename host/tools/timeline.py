@@ -1,5 +1,6 @@
 """The curves of a logged run over time, as one SVG: what the controller did, and the limits that it kept."""
 import io
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -20,6 +21,12 @@ LEAST_SHARE = 0.002  # of the time axis: a shorter stretch is drawn as long
 WORD_SHARE = 0.07   # of the time axis: a shorter stretch has no room for its name
 PANELS = dict(figsize=(11, 14), sharex=True, layout="constrained", gridspec_kw={"height_ratios": [1, 2, 2, 2, 2, 2]})
 MOST_ROWS = 20000   # of a curve
+
+
+class Curves(NamedTuple):
+    svg: bytes
+    span_s: tuple   # the time axis: from, to
+    span: tuple     # where it begins and ends, as shares of the picture's width
 
 
 def stretches(t_s, values):
@@ -90,8 +97,8 @@ def thinned(run):
     return run._replace(columns={name: values[::step] for name, values in run.columns.items()})
 
 
-def svg(run, limits):
-    """run: of logs.run_of(); limits: (positions, velocities), each joints x 2."""
+def draw(run, limits):
+    """The Curves of a run: of logs.run_of(); limits: (positions, velocities), each joints x 2."""
     run = thinned(run)
     figure, panels = plt.subplots(6, **PANELS)
     plot_band(panels[0], run)
@@ -111,4 +118,4 @@ def svg(run, limits):
     file = io.BytesIO()
     figure.savefig(file, format="svg", metadata={"Date": None})
     plt.close(figure)
-    return file.getvalue()
+    return Curves(file.getvalue(), panels[0].get_xlim(), tuple(panels[0].get_position().intervalx))
