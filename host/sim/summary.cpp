@@ -49,13 +49,14 @@ void Summary::add(const Row& row) {
 }
 
 /// The period of the controller, which may differ from that of the simulator: joint_velocity leads from the last
-/// joint_position to the new one, except while the position catches up with the arm. Time stamps do not tell the
-/// period, because wake-ups jitter and cycles are skipped.
+/// joint_position to the new one, except while the position catches up with the arm: then the joints disagree about the
+/// period, and a single joint in motion tells nothing. Time stamps do not tell the period, because wake-ups jitter and
+/// cycles are skipped.
 void Summary::measure_period(const Command& command) {
   const Eigen::VectorXd change_rad = command.q_rad - previous_->q_rad;
-  const double speed2 = command.qd_radps.squaredNorm(), slow_radps = 0.01, rounding_rad = 1e-12;
-  if (!(speed2 > slow_radps * slow_radps)) return;
-  const double period_s = change_rad.dot(command.qd_radps) / speed2;
+  const double slow_radps = 0.01, rounding_rad = 1e-12;
+  if ((command.qd_radps.array().abs() > slow_radps).count() < 2) return;
+  const double period_s = change_rad.dot(command.qd_radps) / command.qd_radps.squaredNorm();
   const bool leads = period_s > 0.0 && (change_rad - period_s * command.qd_radps).norm() < rounding_rad;
   if (leads) command_period_s_ = period_s;
 }

@@ -234,6 +234,17 @@ void acceleration_of_a_faster_controller_is_computed_over_its_own_periods(void**
   assert_int_equal(summary.broken(expect).size(), 1);
 }
 
+/// The position of a joint that catches up with the arm moves by less than its velocity says.
+void a_single_joint_that_catches_up_does_not_count_as_acceleration(void**) {
+  const auto at = [](int64_t cycle, double q_rad, double qd_radps) {
+    Eigen::VectorXd position_rad = Eigen::VectorXd::Zero(7), velocity_radps = Eigen::VectorXd::Zero(7);
+    position_rad[3] = q_rad;
+    velocity_radps[3] = qd_radps;
+    return Command{10'000 * cycle, cycle, velocity_radps, position_rad};
+  };
+  check_near(largest_acceleration_radps2({at(1, 0, 1.1), at(2, 0.01, 1.2), at(3, 0.021, 1.3)}), 10, 1e-9);
+}
+
 void the_summary_names_the_closest_pair(void**) {
   Summary summary(10'000);
   Scenario scenario;
@@ -261,6 +272,7 @@ int main() {
       cmocka_unit_test(acceleration_is_computed_over_the_cycles_between_two_commands),
       cmocka_unit_test(a_command_stream_starts_between_the_last_command_and_rest),
       cmocka_unit_test(acceleration_of_a_faster_controller_is_computed_over_its_own_periods),
+      cmocka_unit_test(a_single_joint_that_catches_up_does_not_count_as_acceleration),
       cmocka_unit_test(the_summary_names_the_closest_pair),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
