@@ -6,11 +6,15 @@
 #include <filesystem>
 
 #include "firmware/base/command_line.h"
+#include "firmware/base/realtime.h"
 #include "host/sim/simulation.h"
 
 namespace {
 
 using namespace sidestep::sim;
+
+// In real time the simulator stands for an arm, which does not wait for a CPU. Below the threads of the controller.
+constexpr int kPriority = 60;
 
 enum ExitCode { kHeld = 0, kBroken = 1, kBadInput = 2, kNoController = 3, kInterruptedBySignal = 130 };
 
@@ -88,6 +92,8 @@ int simulate(const Options& options) {
     runs.emplace_back(scenario, csv_file_of(scenario, options.csv_file));
     channels.push_back(scenario.channels);
   }
+  std::string why_not;
+  if (!options.lockstep) sidestep::use_fifo(kPriority, why_not);  // inherited by the threads of LCM
   SimWire wire(options.lcm_url, options.log_file, channels);
   for (size_t arm = 0; arm < runs.size(); ++arm) wire.leave_to_others(arm, runs[arm].scenario().world);
   Simulation simulation(std::move(runs), ProgressLine(options.quiet, options.lockstep));

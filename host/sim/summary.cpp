@@ -71,7 +71,9 @@ void Summary::add(const Command& command) {
     // plant's stop: from a velocity between that of the last command and rest.
     const bool continues = since_s <= 1e-6 * static_cast<double>(Plant::kWatchdog_us);
     if (continues && cycles == 1.0) measure_period(command);
-    const bool lost = continues && cycles > 1.0 && (cycles - 2.0) * command_period_s_ < since_s;
+    // A stream does not end in motion while the cycles go on: its commands were lost.
+    const bool moved = !previous_->qd_radps.isZero();
+    const bool lost = (continues || moved) && cycles > 1.0 && (cycles - 2.0) * command_period_s_ < since_s;
     Eigen::VectorXd before_radps = previous_->qd_radps;
     if (!continues)
       before_radps = command.qd_radps.cwiseMax(before_radps.cwiseMin(0.0)).cwiseMin(before_radps.cwiseMax(0.0));

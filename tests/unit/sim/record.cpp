@@ -194,7 +194,8 @@ void acceleration_is_computed_over_the_cycles_between_two_commands(void**) {
   check_near(after(1'000, 1, 0.1), 10, 1e-9);   // a late cycle, then one on time
   check_near(after(31'000, 1, 0.1), 10, 1e-9);  // skipped cycles permit no larger step
   check_near(after(12'000, 2, 0.2), 10, 1e-9);  // a command was lost, and the one before it was late
-  check_near(after(0, 0, 0.1), 10, 1e-9);       // another controller
+  check_near(largest_acceleration_radps2({command(1'000'000, 5, 0.3), command(1'060'000, 11, 0.9)}), 10, 1e-9);
+  check_near(after(0, 0, 0.1), 10, 1e-9);  // another controller
   check_near(after(10'000, 1000, 0.1), 10, 1e-9);
   check_near(after(10'000, -1000, 0.1), 10, 1e-9);
 }
@@ -209,6 +210,8 @@ void a_command_stream_starts_between_the_last_command_and_rest(void**) {
   check_near(after_pause(0.4), 0, 1e-9);
   check_near(after_pause(0.7), 30, 1e-9);
   check_near(after_pause(-0.3), 30, 1e-9);
+  // From rest a stream may have ended: no cycle between the two counts.
+  check_near(largest_acceleration_radps2({command(1'000'000, 5, 0), command(1'060'000, 11, 0.3)}), 30, 1e-9);
 }
 
 /// Commands of a controller with a period of 1 ms, whose time stamps jitter and of which some are lost. The position
