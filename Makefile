@@ -168,7 +168,8 @@ spy: $(BUILD)/types.jar ## start lcm-spy, which decodes the message types
 	@java -cp $(SPY):$< lcm.spy.Spy
 
 report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)
-	@$(PYTHON) host/tools/report.py $(or $(LOG),no-run-yet) -o $(BUILD)/report.html
+	@test -n "$(LOG)" || { echo "no run is recorded yet: make run, or give a log with LOG="; exit 2; }
+	@$(PYTHON) host/tools/report.py $(LOG) -o $(BUILD)/report.html
 
 ##@ Checking
 
@@ -183,7 +184,7 @@ help: ## print this list
 	@awk 'BEGIN {FS = ":.*## "} /^##@/ {printf "\n%s\n", substr($$0, 5)} \
 	  /^[a-z0-9-]+:.*## / {printf "  make %-12s %s\n", $$1, $$2}' Makefile
 	@printf '\nScenes (SCENARIO=NAME)\n'
-	@awk -F '"' '/^title:/ {name = FILENAME; sub(".*/", "", name); sub(".yaml", "", name); printf "  %-17s %s\n", name, $$2}' \
+	@awk -F '"' '/^title:/ {name = FILENAME; sub(".*/", "", name); sub(".yaml", "", name); printf "  %-20s %s\n", name, $$2}' \
 	  host/scenarios/*.yaml
 
 .PHONY: always setup all run test peers-test faults fuzz sanitize arm64 campaign bench figures animation docs timing soak install uninstall deb install-test view play view-test spy report lint clean help

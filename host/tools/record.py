@@ -47,7 +47,8 @@ def record(file, channels, lcm_url):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("log", metavar="LOG", help="file to write; an existing one is replaced")
-    parser.add_argument("--channels", nargs="+", default=list(wire.TYPES), metavar="NAME", help="default: %(default)s")
+    parser.add_argument("--channels", nargs="+", default=list(wire.TYPES), metavar="NAME",
+                        help=f"default: {', '.join(wire.TYPES)}")
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
     for number in STOPS:  # a shell starts background jobs with SIGINT ignored

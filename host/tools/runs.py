@@ -34,6 +34,10 @@ class RunFailed(Exception):
         self.code = code
 
 
+class ControllerStopped(RunFailed):
+    """An operator or a signal has stopped the controller before the end of the simulation."""
+
+
 class Run(NamedTuple):
     name: str       # of the scenario's file, for two arms with the arm's name
     law: str
@@ -216,8 +220,10 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
         reason = f": {last_line(logs['sim'])}" if lockstep else ""
         raise RunFailed(f"build/sim {ending(sim)}{reason}", sim)
     for name, code in codes.items():
-        if code or name in lost:
+        if code:
             raise RunFailed(f"build/controller {ending(code)}: {last_line(logs[name])}")
+    if lost:
+        raise ControllerStopped("the controller was stopped, by control.py or a signal")
     if log:
         verdict_file(log).write_text("met" if sim == HELD else "not met")
     return sim

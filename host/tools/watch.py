@@ -148,8 +148,8 @@ def dashboard(screen, latest):
 
 
 def plain(latest):
-    """A line for every status; while the controller is silent one for every second."""
-    shown_s = 0
+    """A line for every status; while the controller is silent one for every second, before the first status one."""
+    shown_s = None
     while True:
         latest.receive(PERIOD_S)
         ages_s = latest.ages_s()

@@ -15,6 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "host/tools"))
 import runs
 from errors import reason
+from view import add_port
 
 PAUSE_S = 1.0  # between two runs
 COMMANDS = """In a second terminal:
@@ -64,7 +65,7 @@ def lacks_target(scenario):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path, metavar="SCENARIO.yaml")
-    parser.add_argument("--port", type=int, default=7000, help="port of the browser page (default %(default)s)")
+    add_port(parser)
     arguments = parser.parse_args()
     scenario_file = arguments.scenario.absolute()
     scenario = runs.load_scenario(scenario_file)
@@ -74,7 +75,11 @@ def main():
         print(COMMANDS.format(root=ROOT), flush=True)
     with viewer(scenario, arguments.port) as view:
         while view.poll() is None:
-            runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)
+            try:
+                runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)
+            except runs.ControllerStopped as stopped:
+                print(f"\n{stopped}")
+                return 0
             time.sleep(PAUSE_S)
     raise runs.RunFailed(f"the view has ended: {runs.last_line(runs.RECORDS / 'view.log')}")
 

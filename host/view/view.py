@@ -59,6 +59,17 @@ class View:
                 self.draw()
 
 
+def port(text):
+    """The port that the text gives; argparse names what is wrong with another text."""
+    if not 1 <= (value := int(text)) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text} is not from 1 to 65535")
+    return value
+
+
+def add_port(parser):
+    parser.add_argument("--port", type=port, default=7000, help="port of the browser page (default %(default)s)")
+
+
 def arms_of(arguments):
     """An ArmView for each configuration, named after its file if there are several."""
     return [ArmView(config, arm.robot_of(config, arguments), config.stem if len(arguments.config) > 1 else "")
@@ -69,7 +80,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--config", type=Path, nargs="+", default=[arm.CONFIG],
                         help="configuration of the controller, one for each arm (default: that of the LWA3)")
-    parser.add_argument("--port", type=int, default=7000, help="port of the page (default %(default)s)")
+    add_port(parser)
     parser.add_argument("--steer", action="store_true", help="offer a target to drag, which is then sent on TARGET")
     arm.add_robot(parser)
     wire.add_lcm_url(parser)

@@ -270,6 +270,7 @@ def refusals():
                 (report, [log, "--config", no_robot], 1, "robot has no urdf"),
                 (report, [log, "--urdf", nonsense], 1, f"{nonsense}: syntax error"),
                 (view, ["--config", "/nonexistent"], 1, "No such file"),
+                (view, ["--port", "80000"], 2, "80000 is not from 1 to 65535"),
                 (view, ["--config", nonsense], 1, f"{nonsense}: mapping")):
             result = refusal(script, *words)
             assert result[0] == code and reason in result[1] and "\n" not in result[1], (words, result)
@@ -303,17 +304,17 @@ def taken_port():
 
 
 def play_commands():
-    """Each command that `make play` names runs. --keys needs a terminal, watch.py a controller: without them."""
+    """Each command that `make play` names runs and says something at once. --keys needs a terminal: without it."""
     network = os.environ | {"LCM_DEFAULT_URL": runs.private_url()}
     commands = [line.split("#")[0].split() for line in show.COMMANDS.splitlines() if "host/tools" in line]
     assert len(commands) == 7, commands
     for command in commands:
-        words = [word for word in command if word != "--keys"] + ["--help"] * ("watch" in command[1])
+        words = [word for word in command if word != "--keys"]
         process = subprocess.Popen(words, cwd=ROOT, env=network, stdout=subprocess.PIPE, text=True)
         first = process.stdout.readline()
         process.kill()
         process.wait()
-        assert first.startswith(("sending ", "usage: watch.py")), (words, first)
+        assert first.startswith(("sending ", "waiting for CONTROLLER_STATUS")), (words, first)
 
 
 def late_receiver():
