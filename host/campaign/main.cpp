@@ -11,6 +11,7 @@
 #include "firmware/base/find_file.h"
 #include "firmware/io/config/config.h"
 #include "host/campaign/config_name.h"
+#include "host/campaign/problems/problem_mover.h"
 #include "host/campaign/problems/problem_table.h"
 #include "host/campaign/resume.h"
 #include "host/campaign/scene_export.h"
@@ -34,7 +35,7 @@ struct Options {
   int obstacles = 3;
   double fastest_mps = 0.5;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool quiet = false, smoothness = false, no_cpu = false, resume = false, no_velocities = false;
+  bool quiet = false, smoothness = false, no_cpu = false, resume = false, no_velocities = false, mover = false;
   std::vector<std::string> merge;
 };
 
@@ -88,6 +89,7 @@ void declare(CommandLine& app, Options& options) {
          "--problems", options.problems,
          "play MotionBenchMaker's problems in this folder (scene*.yaml, request*.yaml) with the arm of --config")
       .type_name("FOLDER");
+  app.add_flag("--mover", options.mover, "add to each of --problems a ball that crosses the arm's way");
   app.add_subcommand("merge", "print the tables of all trials in files of --csv")
       .add_option("files", options.merge, "CSV files")
       .required();
@@ -226,10 +228,19 @@ int run_scene(const Options& options) {
   return kDone;
 }
 
+std::vector<Problem> add_movers(const std::vector<Problem>& problems, const Config& config, const Options& options) {
+  std::vector<Problem> crossed = with_movers(problems, config, options.jobs, options.quiet, interrupted);
+  if (crossed.empty()) throw std::runtime_error("--mover: no witness was found");
+  fmt::print("A ball was added to {} of {} problems; no witness was found for the others.\n", crossed.size(),
+             problems.size());
+  return crossed;
+}
+
 int play_problems(const Options& options) {
   if (options.law == "plain") throw std::runtime_error("--problems: the law plain ignores obstacles");
   const Config config = config_of(options);
-  const std::vector<Problem> problems = read_problems(options.problems, config.model.arm);
+  std::vector<Problem> problems = read_problems(options.problems, config.model.arm);
+  if (options.mover) problems = add_movers(problems, config, options);
   const std::vector<ProblemResult> results = play(problems, config, options.jobs, options.quiet, interrupted);
   if (results.size() < problems.size()) {
     fmt::print(stderr, "campaign: interrupted after {} of {} problems\n", results.size(), problems.size());
@@ -241,6 +252,7 @@ int play_problems(const Options& options) {
 }
 
 int act(const Options& options) {
+  if (options.mover && options.problems.empty()) throw std::runtime_error("--mover: --problems is missing");
   if (!options.problems.empty()) return play_problems(options);
   if (!options.merge.empty()) return merge(options);
   if (!options.search.empty()) return run_search(options);

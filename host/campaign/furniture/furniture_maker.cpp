@@ -5,18 +5,15 @@
 #include "host/campaign/furniture/mover.h"
 #include "host/campaign/furniture/path_planner.h"
 #include "host/campaign/furniture/pieces.h"
+#include "host/campaign/furniture/witness_plan.h"
 #include "host/campaign/plain_tracking.h"
 
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kShare = 0.8;                         // of the limits, for the witness
 constexpr double kRest_s = 5.0, kLongest_s = 15.0;     // time after the witness's motion; longest scene
-constexpr double kLinksApart_m = 0.005;                // by the judge's surfaces, where the controller asks for less
 constexpr int kMostGoals = 20'000, kMostStarts = 100;  // draws of a posture
 constexpr int kMostPieces = 10;                        // draws of furniture around a goal
-constexpr int kMostChecks = 20'000;                    // of the planner
-constexpr int kChecksPerPeriod = 2;                    // of the finished witness
 
 Joints draw_joints(Random& random, const Limits& range, double share) {
   Joints q_rad(range.lower_rad.size());
@@ -46,7 +43,7 @@ bool draw_goal(Random& random, Scene& scene) {
     if (!lies_in(region, pose) || !arm.keeps_clear_of_itself(pose)) continue;
     for (int piece = 0; piece < kMostPieces; ++piece) {
       scene.furniture = draw_furniture(random, scene.family->furniture, pose.tool());
-      if (keeps_clear(scene, scene.goal_rad)) return true;
+      if (keeps_clear(scene, scene.goal_rad, kFurnitureClearance_m)) return true;
     }
   }
   return false;
@@ -55,7 +52,9 @@ bool draw_goal(Random& random, Scene& scene) {
 bool draw_start(Random& random, Scene& scene) {
   for (int draw = 0; draw < kMostStarts; ++draw) {
     scene.start_rad = draw_joints(random, scene.arm->range(), 0.7);
-    if (scene.arm->pose(scene.start_rad).tool().z() > 0.15 && keeps_clear(scene, scene.start_rad)) return true;
+    if (scene.arm->pose(scene.start_rad).tool().z() > 0.15 &&
+        keeps_clear(scene, scene.start_rad, kFurnitureClearance_m))
+      return true;
   }
   return false;
 }
@@ -71,38 +70,7 @@ bool straight_path_is_blocked(const Scene& scene) {
   return false;
 }
 
-/// Whether the timed witness keeps clear everywhere; the planner has looked at coarser steps.
-bool witness_keeps_clear(const Scene& scene) {
-  const double step_s = kPeriod_s / kChecksPerPeriod;
-  for (int k = 0; k * step_s < scene.witness_s + step_s; ++k)
-    if (!keeps_clear(scene, scene.witness_path.position_rad(k * step_s))) return false;
-  return true;
-}
-
-bool plan_witness(Random& random, Scene& scene) {
-  const PlanningProblem problem{scene.start_rad,
-                                scene.goal_rad,
-                                scene.arm->range(),
-                                [&scene](const Joints& q_rad) { return keeps_clear(scene, q_rad); },
-                                static_cast<uint32_t>(random.integer(1, 1'000'000'000)),
-                                kMostChecks};
-  std::vector<Joints> knots_rad = plan_path(problem);
-  if (knots_rad.empty()) return false;
-  scene.witness_path = TimedPath(std::move(knots_rad), scene.arm->limits(*scene.family), kShare);
-  scene.witness_s = scene.witness_path.duration_s();
-  scene.periods = static_cast<int>(std::ceil((scene.witness_s + kRest_s) / kPeriod_s));
-  return scene.duration_s() <= kLongest_s && witness_keeps_clear(scene);
-}
-
 }  // namespace
-
-bool keeps_clear(const Scene& scene, const Joints& q_rad) {
-  const JudgeArm& arm = *scene.arm;
-  const ArmPose pose = arm.pose(q_rad);
-  return arm.keeps_clear_of_itself(pose) &&  // the cheapest first
-         arm.solid_clearance(pose, scene.furniture, kFurnitureClearance_m) >= kFurnitureClearance_m &&
-         arm.self_clearance(pose, kLinksApart_m) >= kLinksApart_m;
-}
 
 bool make_furniture(Random& random, Scene& scene) {
   scene.spheres.clear();
@@ -111,7 +79,10 @@ bool make_furniture(Random& random, Scene& scene) {
   scene.periods = static_cast<int>(kLongest_s / kPeriod_s);
   if (!draw_goal(random, scene) || !draw_start(random, scene)) return false;
   if (!straight_path_is_blocked(scene) || !plain_tracking_hits(scene)) return false;
-  return plan_witness(random, scene) && (!scene.family->mover || draw_mover(random, scene));
+  if (!plan_witness(random, scene, kFurnitureClearance_m)) return false;
+  scene.periods = static_cast<int>(std::ceil((scene.witness_s + kRest_s) / kPeriod_s));
+  if (scene.duration_s() > kLongest_s) return false;
+  return !scene.family->mover || draw_mover(random, scene);
 }
 
 }  // namespace sidestep::campaign

@@ -14,7 +14,4 @@ constexpr double kFurnitureClearance_m = 0.01;
 /// touch the furniture. Returns false if these draws give no such scene.
 bool make_furniture(Random& random, Scene& scene);
 
-/// Whether the arm keeps the witness's distances from the scene's furniture and from itself in this posture.
-bool keeps_clear(const Scene& scene, const Joints& q_rad);
-
 }  // namespace sidestep::campaign

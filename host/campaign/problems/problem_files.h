@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/campaign/judge_arm.h"
+#include "host/campaign/sphere_path.h"
 
 namespace sidestep::campaign {
 
@@ -14,6 +16,7 @@ struct Problem {
   Joints start_rad, goal_rad;
   JointPositions other_positions;        ///< of joints that the start state names and that are not the arm's
   std::vector<sim::Obstacle> obstacles;  ///< base frame, ids from 0
+  std::optional<SpherePath> mover;       ///< of radius kSphereRadius_m; not from the files (problem_mover.h)
 };
 
 /// Reads all problems below a folder: every scene<number>.yaml (MoveIt's planning scene with boxes, cylinders and

@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "firmware/base/fail.h"
@@ -30,15 +31,22 @@ std::string median_arrival_s(const Results& results) {
   return fmt::format("{:.2f}", *middle);
 }
 
+/// The least clearance to a mover, mm; "-" without any.
+std::string mover_clearance_mm(const Results& results) {
+  double least_m = std::numeric_limits<double>::quiet_NaN();
+  for (const ProblemResult& result : results) least_m = std::fmin(least_m, result.mover_clearance_m);
+  return std::isnan(least_m) ? "-" : fmt::format("{:.1f}", 1e3 * least_m);
+}
+
 std::string line(const std::string& kind, const Results& results) {
   double clearance_m = sim::kNothingNear;
   for (const ProblemResult& result : results) clearance_m = std::min(clearance_m, result.clearance_m);
   const auto arrived = [&](double within_m) {
     return count(results, [=](const ProblemResult& r) { return r.arrived(within_m) && !r.touched(); });
   };
-  return fmt::format("{:20}{:10}{:10}{:10}{:10}{:14.1f}{:>16}\n", kind, results.size(), arrived(0.01), arrived(0.005),
-                     count(results, [](const ProblemResult& r) { return r.touched(); }), clearance_m * 1e3,
-                     median_arrival_s(results));
+  return fmt::format("{:24}{:10}{:10}{:10}{:10}{:14.1f}{:>14}{:>16}\n", kind, results.size(), arrived(0.01),
+                     arrived(0.005), count(results, [](const ProblemResult& r) { return r.touched(); }),
+                     clearance_m * 1e3, mover_clearance_mm(results), median_arrival_s(results));
 }
 
 /// The shares of all problems with their 95 % confidence intervals.
@@ -57,10 +65,10 @@ std::string intervals(const Results& results) {
 }  // namespace
 
 std::string problem_table(const std::vector<Problem>& problems, const Results& results) {
-  std::string table = fmt::format("{:20}{:>10}{:>10}{:>10}{:>10}{:>14}{:>16}\n", "", "problems", "solved", "solved",
-                                  "contact", "clearance", "arrival");
-  table += fmt::format("{:20}{:>10}{:>10}{:>10}{:>10}{:>14}{:>16}\n", "", "", "to 10 mm", "to 5 mm", "", "min, mm",
-                       "median, s");
+  std::string table = fmt::format("{:24}{:>10}{:>10}{:>10}{:>10}{:>14}{:>14}{:>16}\n", "", "problems", "solved",
+                                  "solved", "contact", "clearance", "to mover", "arrival");
+  table += fmt::format("{:24}{:>10}{:>10}{:>10}{:>10}{:>14}{:>14}{:>16}\n", "", "", "to 10 mm", "to 5 mm", "",
+                       "min, mm", "min, mm", "median, s");
   for (size_t first = 0; first < problems.size();) {
     size_t end = first;
     while (end < problems.size() && problems[end].kind == problems[first].kind) ++end;
@@ -74,11 +82,11 @@ std::string problem_table(const std::vector<Problem>& problems, const Results& r
 
 void write_problem_csv(const std::string& file, const std::vector<Problem>& problems, const Results& results) {
   std::ofstream stream(file);
-  stream << "kind,name,error_m,error_rad,arrival_s,clearance_m,self_clearance_m,guided\n";
+  stream << "kind,name,error_m,error_rad,arrival_s,clearance_m,self_clearance_m,mover_clearance_m,guided\n";
   for (size_t i = 0; i < results.size(); ++i) {
     const ProblemResult& r = results[i];
-    fmt::print(stream, "{},{},{:.6f},{:.6f},{:.2f},{:.6f},{:.6f},{:.3f}\n", problems[i].kind, problems[i].name,
-               r.error_m, r.error_rad, r.arrival_s, r.clearance_m, r.self_clearance_m, r.guided);
+    fmt::print(stream, "{},{},{:.6f},{:.6f},{:.2f},{:.6f},{:.6f},{:.6f},{:.3f}\n", problems[i].kind, problems[i].name,
+               r.error_m, r.error_rad, r.arrival_s, r.clearance_m, r.self_clearance_m, r.mover_clearance_m, r.guided);
   }
   stream.close();
   if (!stream) fail("{}: cannot be written", file);

@@ -1,6 +1,8 @@
 #include "host/campaign/problems/problem_trial.h"
 
+#include "host/campaign/problems/problem_mover.h"
 #include "host/campaign/problems/problem_table.h"
+#include "host/campaign/scene.h"
 #include "tests/support/check.h"
 
 using namespace sidestep;
@@ -27,6 +29,31 @@ void the_arm_reaches_under_a_table(void**) {
   check(alone.arrival_s > 5.0, "the law alone arrives after %g s: the problem shows nothing", alone.arrival_s);
 }
 
+const std::atomic<bool> kGoOn{false};
+
+void a_ball_that_crosses_the_way_is_evaded(void**) {
+  const Config config = load_config("firmware/config/panda.yaml", {});
+  const std::vector<Problem> problems = read_problems("tests/data/problems", config.model.arm);
+  const std::vector<Problem> crossed = with_movers(problems, config, 1, true, kGoOn);
+  assert_int_equal(crossed.size(), 1);
+  assert_string_equal(crossed[0].kind.c_str(), "under-table@mover");
+  check_near(with_movers(problems, config, 1, true, kGoOn)[0].mover->at(1.0).position_m,
+             crossed[0].mover->at(1.0).position_m, 0.0);
+  const ProblemResult result = results_of(crossed, config)[0];
+  check(result.arrived(0.01) && !result.touched(), "%g m away, %g m clear", result.error_m, result.mover_clearance_m);
+  check(result.mover_clearance_m < 0.5, "%g m: it never came near", result.mover_clearance_m);
+}
+
+/// It flies through the first link, which cannot evade.
+void contact_with_the_ball_is_seen(void**) {
+  const Config config = load_config("firmware/config/panda.yaml", {});
+  std::vector<Problem> problems = read_problems("tests/data/problems", config.model.arm);
+  problems[0].mover = SpherePath({-0.5, 0.0, 0.2}, {0.5, 0.0, 0.0});
+  const ProblemResult result = results_of(problems, config)[0];
+  check(result.touched() && result.mover_clearance_m < 0.0 && result.clearance_m > 0.0, "%g m, %g m",
+        result.mover_clearance_m, result.clearance_m);
+}
+
 void the_table_counts_what_was_solved(void**) {
   ProblemResult solved, near, touched;
   solved.clearance_m = near.clearance_m = 0.004;
@@ -45,9 +72,9 @@ void the_table_counts_what_was_solved(void**) {
       if (c != ' ' || (!packed.empty() && packed.back() != ' ')) packed += c;
     check(packed == kind + counts, "'%s'", packed.c_str());
   };
-  has_line("box", " 2 2 1 0 4.0 1.50");
-  has_line("cage", " 1 0 0 1 -1.0 -");
-  has_line("all", " 3 2 1 1 -1.0 1.50");
+  has_line("box", " 2 2 1 0 4.0 - 1.50");
+  has_line("cage", " 1 0 0 1 -1.0 - -");
+  has_line("all", " 3 2 1 1 -1.0 - 1.50");
 }
 
 }  // namespace
@@ -55,6 +82,8 @@ void the_table_counts_what_was_solved(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(the_arm_reaches_under_a_table),
+      cmocka_unit_test(a_ball_that_crosses_the_way_is_evaded),
+      cmocka_unit_test(contact_with_the_ball_is_seen),
       cmocka_unit_test(the_table_counts_what_was_solved),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
