@@ -68,7 +68,8 @@ class ArmView:
     def in_world(self, obstacle):
         result = copy.copy(obstacle)
         result.position, result.velocity = self.point(obstacle.position), self.rotation @ np.array(obstacle.velocity)
-        result.quaternion = arm.quaternion_of(self.rotation @ arm.rotation_of_quaternion(obstacle.quaternion))
+        if not np.array_equal(self.rotation, np.eye(3)):
+            result.quaternion = arm.quaternion_of(self.rotation @ arm.rotation_of_quaternion(obstacle.quaternion))
         return result
 
     def obstacles(self, latest):

@@ -116,6 +116,7 @@ class ObstacleNodes:
 
     def __init__(self, scene):
         self.scene, self.nodes = scene, {}
+        self.turns = {}  # id -> the orientation that was sent; sending it again would cost as much as a position
         self.arrows = scene.add_arrows("/velocities", NO_LINES, OBSTACLE, shaft_radius=0.008, head_radius=0.02,
                                        head_length=0.05, visible=False)
         self.shows_arrows = True
@@ -126,8 +127,9 @@ class ObstacleNodes:
         for obstacle in obstacles:
             handle = self.handle_of(obstacle)
             handle.position = obstacle.position
-            if obstacle.shape != obstacle_t.SPHERE:
-                handle.wxyz = obstacle.quaternion
+            turn = tuple(obstacle.quaternion)
+            if obstacle.shape != obstacle_t.SPHERE and self.turns.get(obstacle.id) != turn:
+                handle.wxyz = self.turns[obstacle.id] = turn
         moving = [obstacle for obstacle in obstacles if np.linalg.norm(obstacle.velocity) > 0.01]
         set_lines(self.arrows, [arrow_of(obstacle) for obstacle in moving] if self.shows_arrows else NO_LINES)
 
@@ -135,6 +137,7 @@ class ObstacleNodes:
         """The node of the obstacle; a new one when its shape has changed."""
         form = (obstacle.shape, *obstacle.size)
         if self.nodes.get(obstacle.id, (None,))[0] != form:
+            self.turns.pop(obstacle.id, None)
             mesh = mesh_of(OBSTACLE_KINDS[obstacle.shape], obstacle.size)
             colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
             self.nodes[obstacle.id] = form, add_mesh(self.scene, f"/obstacles/{obstacle.id}", mesh, colour)
