@@ -10,9 +10,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
+import drawing
+import outcome
 import plots
 import runs
 import solids
+import style
 from runs import LAWS
 from solids import in_world
 
@@ -20,9 +23,8 @@ VIEW = solids.View(-80, 28)
 FRAME_S, HOLD_S = 0.08, 2.0  # the last frame stays for HOLD_S
 COLOURS = 64
 NEAR_M = 0.6     # obstacles within this clearance are in the picture
-ARRIVED_M = 0.01
 ARROW_M = 0.16
-RED, OBSTACLE = plots.CONTACT, "#77808C"
+RED, OBSTACLE = style.CONTACT, "#77808C"
 
 
 def rows_of(run):
@@ -45,7 +47,7 @@ def limits(both):
 
 def words(run, row):
     """(text, colour) of the two lines below a panel: clearance or contact, and the distance to the target."""
-    t, clearance_m, distance_m = run.columns["t_s"], plots.clearance(run), run.columns["target_distance_m"][row]
+    t, clearance_m, distance_m = run.columns["t_s"], outcome.clearance(run), run.columns["target_distance_m"][row]
     touching = np.flatnonzero(clearance_m[:row + 1] < 0)
     if clearance_m[row] < 0:
         first = f"CONTACT, {-clearance_m[row] * 1000:.0f} mm deep", RED
@@ -57,9 +59,9 @@ def words(run, row):
         first = f"no contact, least clearance {clearance_m.min() * 1000:.0f} mm", "black"
     else:
         first = f"clearance {clearance_m[row] * 1000:.0f} mm", "black"
-    arrived = distance_m < ARRIVED_M
+    arrived = distance_m < outcome.ARRIVED_M
     return first, (f"target {'reached' if arrived else f'{distance_m * 1000:.0f} mm away'}",
-                   plots.TARGET if arrived else "0.35")
+                   style.TARGET if arrived else "0.35")
 
 
 def draw_obstacles(painter, run, row):
@@ -76,29 +78,29 @@ def draw_obstacles(painter, run, row):
 
 
 def draw_scene(painter, run, row, touching):
-    colour = plots.LAW_COLOURS[run.law]
-    plots.draw_floor(painter, run)
+    colour = style.LAW_COLOURS[run.law]
+    drawing.draw_floor(painter, run)
     for one in solids.surroundings(run):
         painter.solid(one, "0.75", 0.35, behind=True)
     draw_obstacles(painter, run, row)
     for other in run.others:
-        plots.draw_arm(painter, other, row, "#B8A070", 1.0, None)
-    plots.draw_arm(painter, run, row, RED if touching else colour, 1.0, None)
+        drawing.draw_arm(painter, other, row, style.OTHER_ARM, 1.0, None)
+    drawing.draw_arm(painter, run, row, RED if touching else colour, 1.0, None)
     painter.line(in_world(run.scenario, run.path("tool")[:row + 1]), color=colour, linewidth=1.2, zorder=6)
-    painter.line(in_world(run.scenario, run.path("target")[[row]]), color=plots.TARGET, marker="*", markersize=18,
+    painter.line(in_world(run.scenario, run.path("target")[[row]]), color=style.TARGET, marker="*", markersize=18,
                  markeredgecolor="white", zorder=9)
-    if touching:
-        plots.mark_closest(painter, run, row, True)
+    if touching and (pair := outcome.nearest(run, row, outcome.clearance(run)[row])[1]):
+        drawing.mark_contact(painter, pair)
     painter.finish()
 
 
 def draw(axes, run, row, corners):
     law = LAWS[run.law]
-    draw_scene(plots.Painter(axes, VIEW), run, row, plots.clearance(run)[row] < 0)
+    draw_scene(drawing.Painter(axes, VIEW), run, row, outcome.clearance(run)[row] < 0)
     axes.set(xlim=(corners[0][0], corners[1][0]), ylim=(corners[0][1], corners[1][1]))
     axes.set_axis_off()
     axes.set_title(law[0].upper() + law[1:], loc="center", fontsize=15, fontweight="bold",
-                   color=plots.LAW_COLOURS[run.law])
+                   color=style.LAW_COLOURS[run.law])
     for line, (text, colour) in enumerate(words(run, row)):
         axes.text(0.5, -0.01 - 0.085 * line, text, transform=axes.transAxes, ha="center", va="top", fontsize=14,
                   color=colour, fontweight="bold" if colour == RED else "normal")

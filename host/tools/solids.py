@@ -65,6 +65,9 @@ def depth_m(solid, points):
         beyond = np.abs(local) - np.array(solid.size) / 2
         return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
     half = solid.size[1] / 2 if len(solid.size) > 1 else 0.0
+    if solid.kind == "cylinder":
+        beyond = np.stack([np.linalg.norm(local[:, :2], axis=1) - solid.size[0], np.abs(local[:, 2]) - half], axis=1)
+        return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0)
     local[:, 2] -= np.clip(local[:, 2], -half, half)
     return np.linalg.norm(local, axis=1) - solid.size[0]
 
@@ -138,20 +141,29 @@ def surroundings(run):
 
 
 def foot(solid, point):
-    """The point of the solid's surface that is nearest to a point, of which a box may contain it."""
+    """The point of the solid's surface that is nearest to a point. A box or cylinder that contains it gives it back."""
     local = solid.rotation.T @ (point - solid.position)
     if solid.kind == "box":
         half = np.array(solid.size) / 2
         return solid.rotation @ np.clip(local, -half, half) + solid.position
     half = solid.size[1] / 2 if len(solid.size) > 1 else 0.0
     axis = np.array([0, 0, np.clip(local[2], -half, half)])
+    if solid.kind == "cylinder":
+        across = local * [1, 1, 0]
+        across *= min(1.0, solid.size[0] / max(np.linalg.norm(across), 1e-9))
+        return solid.rotation @ (axis + across) + solid.position
     outward = (local - axis) / max(np.linalg.norm(local - axis), 1e-9)
     return solid.rotation @ (axis + outward * solid.size[0]) + solid.position
 
 
-def nearest_pair(solids, others):
-    """The surface point of the solids that is nearest to, or deepest in, one of the others, and that one's point."""
-    points = np.concatenate([surface(solid) for solid in solids])
-    depths = np.array([depth_m(other, points) for other in others])
-    nearest, index = np.unravel_index(np.argmin(depths), depths.shape)
-    return points[index], foot(others[nearest], points[index])
+def nearest_points(solid, other, steps=30):
+    """(m, (point of the solid, point of the other)) of two convex solids, by alternating projection.
+
+    Where they overlap the distance is negative, and the points are near the deepest ones.
+    """
+    on_solid = foot(solid, other.position)
+    for _ in range(steps):
+        on_other = foot(other, on_solid)
+        on_solid = foot(solid, on_other)
+    depth = depth_m(other, on_solid[None])[0]
+    return min(depth, np.linalg.norm(on_solid - on_other)), (on_solid, on_other)

@@ -8,9 +8,8 @@ import numpy as np
 import plots
 import watch
 import wire
-from plots import BLACK, CONTACT, GREEN, JOINTS, ORANGE, SKY, TARGET, YELLOW, plt
+from style import BLACK, BLUE, CONTACT, GREEN, JOINTS, ORANGE, SKY, TARGET, YELLOW, plt
 
-REST_CLEARANCE_M = 0.004  # of a configuration without shield.rest_clearance_m
 GUIDED, WAITING = wire.controller_status_t.GUIDED, wire.controller_status_t.WAITING
 REDS = ("#E88080", "#D04040", "#F0B0B0")
 # Rows of the band: column of the run -> value -> (word, colour).
@@ -57,9 +56,7 @@ def plot_band(axes, run):
 
 def plot_clearance(axes, run):
     values_m = run.columns["clearance_m"]
-    axes.plot(run.columns["t_s"], values_m, color=plots.BLUE, label="nearest obstacle, as the controller knows it")
-    rest_m = plots.section(run, "shield").get("rest_clearance_m", REST_CLEARANCE_M)
-    axes.axhline(rest_m, color=BLACK, linewidth=1, linestyle=":", label=f"the same to what rests, {rest_m * 1e3:g} mm")
+    axes.plot(run.columns["t_s"], values_m, color=BLUE, label="nearest obstacle, as the controller knows it")
     least_m = min(values_m[np.isfinite(values_m)], default=0.0)
     plots.finish_clearance(axes, run, least_m, "Clearance between surfaces", 4)
 
@@ -70,7 +67,7 @@ def plot_target_distance(axes, run):
 
 
 def plot_cycle_time(axes, run):
-    axes.plot(run.columns["t_s"], run.columns["cycle_time_s"] * 1e6, color=plots.BLUE, linewidth=1)
+    axes.plot(run.columns["t_s"], run.columns["cycle_time_s"] * 1e6, color=BLUE, linewidth=1)
     plots.finish(axes, "CPU time of a whole cycle", 0, ylabel="time, us", ylim=(0, None))
 
 

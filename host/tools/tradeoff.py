@@ -9,17 +9,17 @@ import csv
 import functools
 import hashlib
 
-import matplotlib.pyplot as plt
 import numpy as np
 import yaml
 
-import plots
 import runs
+import style
+from style import plt
 
 SETS_PER_READING = 75
 CONTACT_M = 0.1  # sum of the radii of obstacle and arm, 0.05 m each
 FLOOR_MM = 0.1   # smaller errors are drawn here, because the axis is logarithmic
-READINGS = {"measured": (plots.ORANGE, "o"), "planned": (plots.SKY, "^")}
+READINGS = {"measured": (style.ORANGE, "o"), "planned": (style.SKY, "^")}
 SCENARIOS = {name: runs.ROOT / f"host/scenarios/{name}.yaml" for name in ("paper-b", "paper-c")}
 CACHE = runs.FIGURES / "tradeoff.csv"
 FIGURE = runs.FIGURES / "tradeoff.png"
@@ -118,12 +118,12 @@ def plot(axes, name, rows):
         scatter(axes, [row for row in swept if row["is_start"] == "False"], 26, colour, marker,
                 f"paper's law, {reading} V", alpha=0.65, linewidth=0)
         scatter(axes, [row for row in swept if row["is_start"] == "True"], 120, colour, marker,
-                f"paper's law, {reading} V, start values", edgecolor=plots.BLACK, zorder=3)
-    scatter(axes, [row for row in rows if row["law"] == "sidestep"], 60, plots.BLUE, "D", "Sidestep",
-            edgecolor=plots.BLACK, zorder=4)
+                f"paper's law, {reading} V, start values", edgecolor=style.BLACK, zorder=3)
+    scatter(axes, [row for row in rows if row["law"] == "sidestep"], 60, style.BLUE, "D", "Sidestep",
+            edgecolor=style.BLACK, zorder=4)
     axes.scatter(published["axis_distance_m"], max(published.get("final_distance_m", 0) * 1e3, FLOOR_MM), s=200,
-                 color=plots.GREEN, marker="*", edgecolor=plots.BLACK, zorder=5, label="published")
-    axes.axvline(CONTACT_M, color=plots.GREY, linewidth=1, linestyle="--")
+                 color=style.GREEN, marker="*", edgecolor=style.BLACK, zorder=5, label="published")
+    axes.axvline(CONTACT_M, color=style.GREY, linewidth=1, linestyle="--")
     axes.annotate("contact", (CONTACT_M, 0.85), xycoords=("data", "axes fraction"), rotation=90, ha="right",
                   va="center", color="0.35")
     axes.set(yscale="log", xlabel="least distance, obstacle centre to arm axis, m",
@@ -141,7 +141,7 @@ def draw():
     for axes, name in zip(panels, SCENARIOS):
         plot(axes, name, [row for row in rows if row["scenario"] == name])
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncol=3)
-    return plots.save(figure, FIGURE)
+    return style.save(figure, FIGURE)
 
 
 def main():
