@@ -120,6 +120,8 @@ def draw_obstacles(painter, run, row):
                          label="track of an obstacle")
         if run.columns[f"o{i + 1}_clearance_m"][row] > NEAR_M:
             continue
+        if painter.view is OBLIQUE and max(one.size) < LARGE_M:
+            draw_shadow(painter, one)
         if moves(run, i):
             draw_moving(painter, one, centres[max(row - 5, 0)], centres[min(row + 5, len(centres) - 1)])
         else:
@@ -130,13 +132,16 @@ def draw_obstacles(painter, run, row):
                           zorder=7, path_effects=HALO, clip_on=True)
 
 
+def draw_shadow(painter, one):
+    """What is straight below a solid on the floor, which shows where it is."""
+    painter.patch(-1000, solids.surface(one) * [1, 1, 0], True, facecolor="0.9", edgecolor="none")
+    painter.legend["below an obstacle, on the floor"] = Patch(facecolor="0.9", edgecolor="none")
+
+
 def draw_moving(painter, one, before, after):
-    """An obstacle with its shadow on the floor, and an arrow in the direction in which it moves at the time."""
+    """An obstacle with an arrow in the direction in which it moves at the time."""
     painter.solid(one, MOVING, 0.75)
     painter.legend["moving obstacle"] = Patch(facecolor=MOVING, edgecolor="0.3")
-    if painter.view is OBLIQUE:
-        painter.patch(-1000, solids.surface(one) * [1, 1, 0], True, facecolor="0.85", edgecolor="none")
-        painter.legend["shadow of an obstacle"] = Patch(facecolor="0.85", edgecolor="none")
     start, end = painter.view.flat([before, after])
     if np.linalg.norm(end - start) > 1e-3:
         middle = painter.view.flat(one.position)

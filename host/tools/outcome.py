@@ -74,7 +74,10 @@ def others(run, row):
 
 
 def nearest(run, row, clearance_m):
-    """(name, pair of points) of what has the recorded clearance at a row."""
+    """(name, pair of points) of what has the recorded clearance at a row; the pair is None if none has it.
+
+    The points of an overlap are near the deepest ones, so that its depth is not compared.
+    """
     recorded = {obstacle_name(run, i): run.columns[f"o{i + 1}_clearance_m"][row] for i in range(obstacle_count(run))}
     recorded[OTHER_ARM] = run.columns["neighbour_clearance_m"][row]
     names = [name for name, value_m in recorded.items() if abs(value_m - clearance_m) < 1e-9]
@@ -82,7 +85,7 @@ def nearest(run, row, clearance_m):
     arm = solids.arm_solids(run, row) + [solids.obstacle_solids(run, row)[i] for i in held(run, row)]
     found = [(*solids.nearest_points(link, one), name) for name, one in there for link in arm]
     distance_m, pair, name = min(found, key=lambda entry: abs(entry[0] - clearance_m), default=(np.inf, None, ""))
-    if abs(distance_m - clearance_m) > SAME_PAIR_M:
+    if abs(distance_m - clearance_m) > SAME_PAIR_M and not max(distance_m, clearance_m) < 0:
         return names[0] if names else "", None
     return name, pair
 
