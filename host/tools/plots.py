@@ -139,7 +139,7 @@ def plot_clearances(axes, run):
         axes.plot(t, values_m, color=colour, label=None if label in known else label)
         known.add(label)
         row = int(np.nanargmin(values_m)) if np.isfinite(values_m).any() else 0
-        if values_m[row] < FAR_M:
+        if values_m[row] < 0.9 * FAR_M:
             axes.annotate(text, (t[row], values_m[row]), (0, 6), textcoords="offset points", fontweight="bold",
                           ha="center", zorder=6, path_effects=drawing.HALO)
     mark_moment(axes, run, moment)
