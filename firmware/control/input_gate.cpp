@@ -17,7 +17,7 @@ InputGate::InputGate(const Arm& arm, const Settings& settings, InputSource sourc
     : arm_(arm),
       timeouts_(settings.timeouts),
       source_(source),
-      estimates_(settings.law != Law::kPaper),
+      estimates_motion_(settings.estimates_motion),
       memory_(settings.obstacle_speed_bound_mps, settings.timeouts.coast_s),
       other_joints_(arm, settings.timeouts.obstacles_s) {}
 
@@ -59,7 +59,7 @@ Verdict InputGate::accept(Attachments& attachments, double now_s) {
 }
 
 void InputGate::complete(ObstacleSet& obstacles, double elapsed_s, double now_s) {
-  if (estimates_) estimator_.complete(obstacles, elapsed_s);
+  if (estimates_motion_) estimator_.complete(obstacles, elapsed_s);
   memory_.add_remembered(obstacles, elapsed_s, now_s);
 }
 

@@ -55,7 +55,7 @@ class InputGate {
   InputSource source_;
   MessageOrder arm_order_, target_order_, joint_target_order_, obstacles_order_, other_joints_order_, control_order_,
       attachments_order_;
-  bool estimates_;  ///< the paper's law takes velocities as they are reported
+  bool estimates_motion_;
   MotionEstimator estimator_;
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;

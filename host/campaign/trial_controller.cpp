@@ -84,7 +84,8 @@ class StepController : public TrialController {
       obstacles_->obstacles[i] = measurement.obstacles[i];
       obstacles_->obstacles[i].id = static_cast<int32_t>(i);
     }
-    estimator_->complete(*obstacles_, static_cast<double>(measurement.received_us - obstacles_us_) * 1e-6);
+    if (model_.settings.estimates_motion)
+      estimator_->complete(*obstacles_, static_cast<double>(measurement.received_us - obstacles_us_) * 1e-6);
     obstacles_us_ = measurement.received_us;
   }
 

@@ -162,12 +162,22 @@ bool is_threatened(const ConstraintRows& rows) {
                      [](const ConstraintRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
 }
 
+bool is_person_near(const ShieldInput& input) {
+  const auto& near = input.clearance.near;
+  return std::any_of(near.begin(), near.end(),
+                     [&](const NearPair& pair) { return input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; });
+}
+
 }  // namespace
 
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps) {
   if (!is_threatened(rows)) return {planned_radps, false};
-  RolloutCost rollout_cost(settings, input, objective);
+  // Else the target, from which the separation keeps the arm away, would draw it back.
+  const bool separates = input.person_weight > 0.0 && is_person_near(input);
+  const QpObjective to_plan{planned_radps, objective.tool_jacobian, objective.tool_weight, objective.comfort_weight,
+                            objective.scale};
+  RolloutCost rollout_cost(settings, input, separates ? to_plan : objective);
   if (rollout_cost.clearance_deficit_m(planned_radps, 0.0) <= 0.0) return {planned_radps, false};
   JointVector best = planned_radps;
   double best_cost = std::numeric_limits<double>::infinity();

@@ -25,7 +25,9 @@ namespace sidestep {
 ///
 /// Cost: the joint and tool terms of the objective (QpObjective), plus 1e4 per metre by which the rollout falls short
 /// of that. The cost of the previous cycle's evasion is multiplied by 0.8, so that the arm does not alternate
-/// between two candidates. The cheapest candidate becomes the plan.
+/// between two candidates. The cheapest candidate becomes the plan. While the arm keeps separation from a person near
+/// it (ShieldInput::person_weight), the plan takes the place of the nominal velocity in the cost: it makes room, and
+/// the nominal velocity leads back to the target.
 ///
 /// `planned_radps` is the plan, n x 1; `rows` and `range` are those of its programme. Bounded: at most 15 programmes,
 /// of up to 3 solutions each, and 18 + 2 n rollouts for n joints (two of the plan, one of the previous evasion).

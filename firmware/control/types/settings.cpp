@@ -9,6 +9,7 @@ void use_law(Settings& settings, Law law) {
   settings.foresight.enabled = false;
   settings.timeouts.coast_s = 0.0;
   settings.bounds_target_speed = false;
+  settings.estimates_motion = false;
 }
 
 }  // namespace sidestep

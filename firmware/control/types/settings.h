@@ -107,6 +107,7 @@ struct Settings {
   /// The speed that an obstacle may have whatever velocity is reported: for the growth of obstacles
   /// (control/extrapolation.h) and for jumps (control/obstacle_memory.h).
   double obstacle_speed_bound_mps = 2.0;
+  bool estimates_motion = true;      ///< of obstacles (motion_estimator.h); false with the paper's law
   bool bounds_target_speed = true;   ///< of the target's own velocity (extrapolation.h); false with the paper's law
   double start_guard_s = 0.0;        ///< after the first state of an arm driver, no command is sent for this time
   bool bridges_outliers = true;      ///< false in rollouts: a state out of reach is a jump there, never an outlier

@@ -163,6 +163,31 @@ void the_evasion_of_the_previous_cycle_is_kept(void**) {
   check(evasions > 30, "only %d evasions", evasions);
 }
 
+/// The same rows, plans and candidates: only the cost differs.
+void beside_persons_the_evasion_stays_near_the_plan_which_makes_room(void**) {
+  Random random(5);
+  double kept_radps = 0.0, given_up_radps = 0.0;
+  int evasions = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene = threatened_scene(random);
+    for (int i = 0; i < scene.set->count; ++i) scene.set->obstacles[static_cast<size_t>(i)].kind = Kind::kPerson;
+    ShieldInput separating = scene.input(), tracking = scene.input();
+    separating.person_weight = model().settings.shield.person_weight;
+    const auto& settings = model().settings.shield;
+    const ConstraintRows rows = make_rows(settings, separating, scene.range, scene.range, scene.rest).plan;
+    const JointVector planned = solve(rows, scene.range, scene.objective()).velocity_radps;
+    const Plan near = evade(settings, separating, rows, scene.range, scene.objective(), planned);
+    const Plan far = evade(settings, tracking, rows, scene.range, scene.objective(), planned);
+    assert_int_equal(near.evading, far.evading);
+    if (!near.evading) continue;
+    ++evasions;
+    kept_radps += (near.velocity_radps - planned).norm();
+    given_up_radps += (far.velocity_radps - planned).norm();
+  }
+  check(evasions > 50 && kept_radps < 0.9 * given_up_radps, "%d evasions, %g and %g rad/s from the plan", evasions,
+        kept_radps / evasions, given_up_radps / evasions);
+}
+
 void equal_inputs_give_equal_evasions(void**) {
   Random random(4);
   for (int trial = 0; trial < 100; ++trial) {
@@ -215,6 +240,7 @@ int main() {
       cmocka_unit_test(without_an_approaching_obstacle_the_plan_stays),
       cmocka_unit_test(the_evasion_is_within_the_range_and_keeps_more_clearance_than_the_plan),
       cmocka_unit_test(the_evasion_of_the_previous_cycle_is_kept),
+      cmocka_unit_test(beside_persons_the_evasion_stays_near_the_plan_which_makes_room),
       cmocka_unit_test(equal_inputs_give_equal_evasions),
       cmocka_unit_test(decoys_in_front_of_the_list_do_not_change_the_evasion),
   };
