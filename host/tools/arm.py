@@ -1,6 +1,7 @@
 """Forward kinematics and collision shapes of a chain of a URDF, for drawing."""
 import sys
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -59,6 +60,11 @@ def parse(urdf, base, tip):
         joints.insert(0, parents[link])
         link = parents[link].find("parent").get("link")
     return joints, {link.get("name"): link for link in robot.findall("link")}
+
+
+def name(urdf):
+    """The robot's name in its URDF; that of the file without one."""
+    return ElementTree.parse(urdf).getroot().get("name") or Path(urdf).stem
 
 
 class Joint(NamedTuple):

@@ -45,10 +45,12 @@ def page(log, robots):
     import panel
     import recording
     import verdict
+    verdicts = [[("robot", arm.name(robots[config][0])), ("recorded", logs.date(log)),
+                 *verdict.rows(run, log)] for run, config in zip(found, robots)]
     template = string.Template((Path(__file__).parent / "report.html").read_text())
     return template.substitute(
         title=html.escape(log.name), key=panel.key(),
-        verdict=table([one.name for one in arms], [verdict.rows(run, log) for run in found]),
+        verdict=table([one.name for one in arms], verdicts),
         recording=html.escape(recording.page(log, arms, found[0].columns["t_s"][-1])),
         curves="\n".join(curves(run, *robot) for run, robot in zip(found, robots.items())))
 

@@ -32,12 +32,13 @@ def at_the_end(distances_m):
 
 
 def faults(run):
-    """Of a run with the column `fault`: which began when."""
-    values = run.columns["fault"]
-    begins = np.flatnonzero((values != 0) & (np.diff(values, prepend=0) != 0))
-    texts = [f"{watch.FAULTS.get(values[row], 'unknown')} at {run.columns['t_s'][row]:.2f} s"
-             for row in begins[:MOST_FAULTS]]
-    more = [f"{len(begins) - MOST_FAULTS} more"] if len(begins) > MOST_FAULTS else []
+    """Of a run with the column `fault`: which began when and lasted how long."""
+    t_s, values = run.columns["t_s"], run.columns["fault"]
+    changes = np.flatnonzero(np.diff(values, prepend=0, append=0) != 0)
+    found = [(row, t_s[min(end, len(t_s) - 1)]) for row, end in zip(changes, changes[1:]) if values[row] != 0]
+    texts = [f"{watch.FAULTS.get(values[row], 'unknown')} at {t_s[row]:.2f} s, for {end_s - t_s[row]:.2f} s"
+             for row, end_s in found[:MOST_FAULTS]]
+    more = [f"{len(found) - MOST_FAULTS} more"] if len(found) > MOST_FAULTS else []
     return "; ".join(texts + more) or "none"
 
 
@@ -58,6 +59,6 @@ def rows(run, log):
     clearance_m = plots.clearance(record) if record else known["clearance_m"]
     touches = contact(record) if record else "yes" if (clearance_m < 0).any() else "no"
     return [("expectations of the scenario", file.read_text() if file.is_file() else "not known"),
-            ("contact", touches), ("least clearance", least(known["t_s"], clearance_m)),
-            ("distance to the target at the end", at_the_end(known["target_distance_m"])), ("faults", faults(run)),
+            ("faults", faults(run)), ("contact", touches), ("least clearance", least(known["t_s"], clearance_m)),
+            ("distance to the target at the end", at_the_end(known["target_distance_m"])),
             ("measured by", "the simulator" if record else "the controller, which knows only what it receives")]

@@ -101,7 +101,8 @@ def faults_on_page():
     """Modes and faults are on the curves by name, and each fault once in the verdict."""
     t_s = np.arange(0.0, 2.0, 0.01)
     columns = {"t_s": t_s, "mode": np.where(t_s < 1, 2, 4), "fault": np.where(t_s < 1, 0, 1), "foresight": t_s < 0.5,
-               "clearance_m": np.full(200, np.inf), "target_distance_m": t_s * np.nan, "cycle_time_s": t_s * 1e-5}
+               "clearance_m": t_s + np.inf, "possible_clearance_m": t_s * np.nan, "target_distance_m": t_s * np.nan,
+               "cycle_time_s": t_s * 1e-5}
     columns |= {f"{name}{i}_{unit}": t_s for i in (1, 2) for name, unit in (("q", "rad"), ("qd", "radps"))}
     run = runs.Run("", "", {"config": arm.CONFIG}, columns, runs.HELD)
     limits = np.array([[-1.0, 1.0], [-np.inf, np.inf]])
@@ -109,8 +110,43 @@ def faults_on_page():
     for word in ("TRACK", "FAULT", "guided", "arm state lost"):
         assert f"<!-- {word} -->" in drawn, word
     assert "<!-- BRAKE -->" not in drawn
-    assert verdict.faults(run) == "arm state lost at 1.00 s"
+    assert "obstacles silent" not in drawn and "nothing logged" not in drawn
+    assert verdict.faults(run) == "arm state lost at 1.00 s, for 0.99 s"
     assert timeline.stretches(t_s, columns["mode"])[1][:2] == (4, 1.0)
+
+
+def gaps():
+    """No line and no stretch of a mode crosses a time from which nothing is logged."""
+    t_s = np.r_[np.arange(0.0, 1.0, 0.01), np.arange(1.5, 2.0, 0.01)]
+    modes = np.where(t_s < 1.6, 2, 3)
+    assert np.allclose(timeline.stretches(t_s, modes), [(2, 0, 0.99), (2, 1.5, 0.1), (3, 1.6, 0.39)], atol=1e-6)
+    run = timeline.broken(runs.Run("", "", {}, {"t_s": t_s, "clearance_m": t_s}, runs.HELD))
+    assert np.array_equal(np.flatnonzero(np.isnan(run.columns["clearance_m"])), [100]), run.columns
+    assert np.array_equal(np.delete(run.columns["clearance_m"], 100), t_s) and len(run.columns["t_s"]) == len(t_s) + 1
+
+
+def silent_obstacles():
+    """A clearance that the controller lowers while the obstacles are silent is neither a clearance nor a contact."""
+    state, status, obstacles = wire.joint_state_t(), wire.controller_status_t(), wire.obstacles_t()
+    state.num_joints, state.joint_position, state.joint_velocity = 7, [0.0] * 7, [0.0] * 7
+    lwa3 = ArmView(arm.CONFIG, LWA3)
+    with tempfile.TemporaryDirectory() as name:
+        file = Path(name) / "run.lcmlog"
+        log = lcm.EventLog(str(file), "w")
+        log.write_event(0, "ARM_STATE", state.encode())
+        log.write_event(0, "OBSTACLES", obstacles.encode())
+        for number in range(60):  # a set of obstacles at 0 and 0.5 s; the statuses from 0.2 s on are logged late
+            status.utime, status.clearance = number * 10_000, 0.2 - 0.02 * number * (number < 50)
+            if number == 50:
+                log.write_event(500_000, "OBSTACLES", obstacles.encode())
+            log.write_event(max(status.utime, 500_000 * (number >= 20)), "CONTROLLER_STATUS", status.encode())
+        log.close()
+        run = logs.run_of(file, [lwa3], lwa3, arm.CONFIG)
+        rows = dict(verdict.rows(run, file))
+    known, possible = (np.flatnonzero(np.isfinite(run.columns[name])) for name in ("clearance_m",
+                                                                                   "possible_clearance_m"))
+    assert np.array_equal(known, [*range(11), *range(50, 60)]) and np.array_equal(possible, range(11, 50)), known
+    assert rows["contact"] == "no" and rows["least clearance"] == "0.0000 m at 0.10 s", rows
 
 
 def limits():
@@ -130,7 +166,8 @@ def limits():
             assert np.array_equal(found[0], positions) and np.array_equal(found[1][:, 1], fastest), found
 
 
-CHECKS = {check.__name__: check for check in (log_becomes_page, hostile_log, faults_on_page, limits)}
+CHECKS = {check.__name__: check for check in (log_becomes_page, hostile_log, faults_on_page, gaps, silent_obstacles,
+                                              limits)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
