@@ -46,6 +46,12 @@ def message_text(status):
     return "".join(letter if letter.isprintable() else "?" for letter in status.message)
 
 
+def mode_text(status):
+    """The mode and the message, where that says more than the mode."""
+    message = message_text(status)
+    return wire.MODES.get(status.mode, str(status.mode)), "" if message == "tracking" else message
+
+
 def target_text(status):
     return f"{status.target_distance:.3f} m" if math.isfinite(status.target_distance) else "no target"
 
@@ -63,6 +69,11 @@ def clearance_text(status, ages_s):
     if math.isnan(status.clearance):
         return "unknown, no obstacles received yet"
     return f"{status.clearance:.3f} m" if math.isfinite(status.clearance) else "no obstacles"
+
+
+def knows_clearance(status, ages_s):
+    """Whether there is a status, it is current, and it states a clearance."""
+    return status is not None and not stale_text(ages_s) and not clearance_text(status, ages_s).startswith("unknown")
 
 
 def nearest_text(status):

@@ -97,6 +97,15 @@ class Messages(dict):
             self[channel], self.received_s[channel] = message, now_s
         return message is not None
 
+    def now_s(self):
+        """The time of the newest message, as far as the messages of a log tell."""
+        return max(self.received_s.values(), default=0.0)
+
+    def ages_s(self):
+        """Channel -> s since its latest message."""
+        now_s = self.now_s()
+        return {channel: now_s - received_s for channel, received_s in self.received_s.items()}
+
 
 class LatestMessages(Messages):
     """Messages as they come over the network; the times are of the monotonic clock."""
@@ -107,10 +116,8 @@ class LatestMessages(Messages):
         for channel in self.kinds:
             self.network.subscribe(channel, lambda name, data: self.store(name, data, time.monotonic()))
 
-    def ages_s(self):
-        """Channel -> s since its latest message."""
-        now_s = time.monotonic()
-        return {channel: now_s - received_s for channel, received_s in self.received_s.items()}
+    def now_s(self):
+        return time.monotonic()
 
     def receive(self, duration_s):
         """Handles the messages that come within duration_s, and first of all those that have come before."""

@@ -4,7 +4,9 @@ import copy
 import numpy as np
 
 import arm
+import geometry
 import runs
+import watch
 from visuals import visuals
 from wire import obstacle_t
 
@@ -108,6 +110,21 @@ class ArmView:
         ages_s = latest.ages_s()
         return (latest.get(self.names["CONTROLLER_STATUS"]),
                 {kind: ages_s[name] for kind, name in self.names.items() if name in ages_s})
+
+    def knows_clearance(self, latest):
+        return watch.knows_clearance(*self.state(latest))
+
+    def nearest(self, latest, link_poses, obstacles):
+        """2 x 3, m: from the link to the obstacle that the controller states to be nearest; None where not drawn."""
+        if not self.knows_clearance(latest):
+            return None
+        status = latest[self.names["CONTROLLER_STATUS"]]
+        number = status.nearest_obstacle  # docs/wire.md: -1 is none, -2 the first of `surroundings`
+        others = ([obstacle for obstacle in obstacles if obstacle.id == number] if number >= 0 else
+                  self.surroundings[-2 - number:][:1] if number <= -2 else [])
+        lines = [geometry.nearest_line(shape, link_poses[shape.frame], other) for shape in self.shapes
+                 if shape.link == status.nearest_link for other in others]
+        return min(lines, key=lambda line: line[0])[1] if lines else None
 
     def guide(self, latest):
         status = latest.get(self.names["CONTROLLER_STATUS"])

@@ -29,6 +29,20 @@ def distance_m(obstacle, points):
     return np.linalg.norm(local, axis=1) - obstacle.size[0]
 
 
+def nearest_line(shape, link_pose, obstacle):
+    """(distance m, 2 x 3): between a link's axis and the nearest point of the obstacle or of its axis, and these."""
+    position, rotation = link_pose
+    points = axis_points(shape)[0] @ rotation.T + position
+    turn = arm.rotation_of_quaternion(obstacle.quaternion)
+    local = (points - np.array(obstacle.position)) @ turn
+    inside = np.array({obstacle_t.BOX: np.array(obstacle.size) / 2, obstacle_t.SPHERE: [0, 0, 0]}.get(
+        obstacle.shape, [0, 0, obstacle.size[1] / 2]))
+    other = np.clip(local, -inside, inside) @ turn.T + np.array(obstacle.position)
+    lengths_m = np.linalg.norm(points - other, axis=1)
+    nearest = np.argmin(lengths_m)
+    return lengths_m[nearest], np.stack([points[nearest], other[nearest]])
+
+
 def clearance_m(shape, link_pose, obstacles):
     """From a link's shape to the nearest obstacle, m; infinity without obstacles. link_pose: position, rotation."""
     position, rotation = link_pose

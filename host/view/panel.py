@@ -4,7 +4,7 @@ import time
 
 import watch
 import wire
-from scene import ARROW_S, BANDS, GUIDE, OBSTACLE, SURROUNDING, TARGET, TRAIL
+from scene import ARROW_S, BANDS, GUIDE, OBSTACLE, SURROUNDING, TARGET, TRAIL, UNKNOWN
 from stage import Layers
 
 STYLE = "<div style='font-size:0.85em;padding:0 1em'>"
@@ -16,17 +16,24 @@ def key():
     bounds = ["0", *(f"{most_m:g}" for most_m, _ in BANDS[:-1])]
     rows = [(colour, f"link, clearance {low} to {most_m:g} m") for low, (most_m, colour) in zip(bounds, BANDS[:-1])]
     rows += [(BANDS[-1][1], f"link, clearance above {bounds[-1]} m"),
-             (OBSTACLE, f"obstacle; arrow: {ARROW_S:g} s ahead"), (SURROUNDING, "surroundings"), (TARGET, "target"),
+             (UNKNOWN, "link, clearance unknown"),
+             (OBSTACLE, f"obstacle; arrow: {ARROW_S:g} s ahead; line: to the nearest link"),
+             (SURROUNDING, "surroundings"), (TARGET, "target"),
              (TRAIL, "path of the tool"), (GUIDE, "path that foresight has planned")]
     return STYLE + "".join(
         f"<div><span style='color:rgb{colour}'>&#9632;</span> {words}</div>" for colour, words in rows) + "</div>"
 
 
-def words_of(status, ages_s):
-    """The state of one controller as HTML. ages_s: kind of message -> s since the latest one."""
+def words_of(status, ages_s, channel, waited_s):
+    """The state of one controller as HTML. ages_s: kind of message -> s since the latest one.
+
+    channel: of the status; waited_s: since the view listens.
+    """
     stale = watch.stale_text(ages_s)
-    rows = [("", stale)] if status is None or stale else [
-        ("", wire.MODES.get(status.mode, status.mode), watch.message_text(status), watch.speed_text(status)),
+    if status is None:
+        stale = f"waiting for {channel} for {waited_s:.0f} s: does the controller run, on this network?"
+    rows = [("", stale)] if stale else [
+        ("", *watch.mode_text(status), watch.speed_text(status)),
         ("clearance: ", watch.clearance_text(status, ages_s), watch.nearest_text(status)),
         ("to the target: ", watch.target_text(status)), ("foresight: ", watch.foresight_text(status) or DIRECT)]
     return STYLE + "".join(f"<div>{name}<b>{html.escape(str(what))}</b> {html.escape(' '.join(rest))}</div>"
@@ -39,7 +46,9 @@ class Panel:
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         gui.set_panel_label("Sidestep")
         self.texts = [gui.add_html("") for _ in arms]
-        self.boxes = Layers(gui.add_checkbox("robot", layers.visuals, disabled=not layers.visuals),
+        self.channels, self.start_s = [one.names["CONTROLLER_STATUS"] for one in arms], time.monotonic()
+        robot = "robot" if layers.visuals else "robot (no visual meshes found)"
+        self.boxes = Layers(gui.add_checkbox(robot, layers.visuals, disabled=not layers.visuals),
                             gui.add_checkbox("controller's shapes", layers.shapes),
                             gui.add_checkbox("velocities", layers.arrows),
                             gui.add_checkbox("path of the tool", layers.trail))
@@ -49,8 +58,8 @@ class Panel:
 
     def show(self, states):
         """states: (status or None, ages_s) of each arm."""
-        for text, state in zip(self.texts, states):
-            words = words_of(*state)
+        for text, state, channel in zip(self.texts, states, self.channels):
+            words = words_of(*state, channel, time.monotonic() - self.start_s)
             if text.content != words:
                 text.content = words
 

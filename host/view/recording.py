@@ -6,7 +6,6 @@ import viser
 
 import logs
 import watch
-import wire
 from stage import Stage, first_layers
 
 FRAME_S = 0.03         # least time between two frames
@@ -21,7 +20,7 @@ def words_of(one, latest):
     status = latest.get(one.names["CONTROLLER_STATUS"])
     if status is None:
         return ""
-    return f"{one.name} {wire.MODES.get(status.mode, status.mode)}: {watch.message_text(status)}".strip()
+    return f"{one.name} {': '.join(filter(None, watch.mode_text(status)))}".strip()
 
 
 def page(log, arms, duration_s):

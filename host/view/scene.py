@@ -7,7 +7,10 @@ from wire import obstacle_t
 
 BANDS = [(0.05, (217, 26, 26)), (0.1, (242, 128, 26)), (0.2, (230, 204, 26)), (np.inf, (51, 115, 217))]  # up to, m
 OBSTACLE, SURROUNDING = (178, 38, 166), (150, 150, 150)
-TARGET, TRAIL, GUIDE = (13, 166, 76), (40, 40, 40), (255, 115, 0)
+UNKNOWN = (95, 95, 105)  # of a link whose clearance nobody knows
+TARGET, TRAIL, GUIDE = (13, 166, 76), (40, 40, 40), (0, 190, 190)
+CROSS_M = 0.12          # from the target to each end of its cross hair, which an arm at the target does not hide
+MOST_NUMBERS = 12       # obstacles; more of them have no numbers
 ARROW_S = 0.5           # an arrow is the motion in this time
 TRANSPARENT = 0.35      # opacity of the collision shapes over visual meshes
 OBSTACLE_KINDS = {obstacle_t.SPHERE: "sphere", obstacle_t.CAPSULE: "capsule", obstacle_t.BOX: "box",
@@ -64,10 +67,15 @@ class ArmNodes:
                         for i, visual in enumerate(one.visuals)]
         self.solids = [self.add_shape(scene, f"{prefix}/{shape.frame}/shape{i}", shape)
                        for i, shape in enumerate(one.shapes)]
+        for i, joint in enumerate(one.chain):  # from joint to joint, where no shape covers the links
+            scene.add_line_segments(f"{prefix}/{i}/axis", np.array([[np.zeros(3), joint.offset]]), TRAIL,
+                                    line_width=2.0)
         self.target = scene.add_icosphere(f"{prefix}/target", 0.03, color=TARGET, visible=False)
-        self.trail, self.guide = (scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width,
-                                                          visible=False)
-                                  for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0)))
+        scene.add_line_segments(f"{prefix}/target/cross", CROSS_M * np.stack([-np.eye(3), np.eye(3)], axis=1), TARGET,
+                                line_width=4.0)
+        self.trail, self.guide, self.nearest = (
+            scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width, visible=False)
+            for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", OBSTACLE, 2.0)))
 
     def add_shape(self, scene, name, shape):
         handle = add_mesh(scene, name, mesh_of(shape.kind, shape.size), visible=not self.visuals,
@@ -80,7 +88,14 @@ class ArmNodes:
             frame.position, frame.wxyz, frame.visible = position, arm.quaternion_of(rotation), True
 
     def colour(self, clearances_m):
-        """clearances_m: of each shape; a visual mesh has the colour of the least clearance of its link."""
+        """clearances_m: of each shape; a visual mesh has the colour of the least clearance of its link.
+
+        None instead of them: unknown.
+        """
+        if clearances_m is None:
+            for handle in (*self.solids, *(visual for _, visual in self.visuals)):
+                paint(handle, UNKNOWN)
+            return
         for solid, clearance_m in zip(self.solids, clearances_m):
             paint(solid, band_of(clearance_m))
         for frame, visual in self.visuals:
@@ -93,16 +108,17 @@ class ArmNodes:
             for handle in handles:
                 handle.visible = visible
 
-    def mark(self, target, trail, guide):
-        """target: 3 or None; trail and guide: points, m."""
+    def mark(self, target, trail, guide, nearest):
+        """target: 3 or None; trail and guide: points, m; nearest: 2 x 3, m, or None."""
         self.target.visible = target is not None
         if target is not None:
             self.target.position = target
         set_lines(self.trail, segments(trail))
         set_lines(self.guide, segments(guide))
+        set_lines(self.nearest, NO_LINES if nearest is None else [nearest])
 
 
-def add_mesh(scene, name, mesh, colour=BANDS[-1][1], **options):
+def add_mesh(scene, name, mesh, colour=UNKNOWN, **options):
     return scene.add_mesh_simple(name, mesh.vertices, mesh.faces, color=colour, **options)
 
 
@@ -125,7 +141,7 @@ class ObstacleNodes:
         for gone in self.nodes.keys() - {obstacle.id for obstacle in obstacles}:
             self.nodes.pop(gone)[1].remove()
         for obstacle in obstacles:
-            handle = self.handle_of(obstacle)
+            handle = self.handle_of(obstacle, numbered=len(obstacles) <= MOST_NUMBERS)
             handle.position = obstacle.position
             turn = tuple(obstacle.quaternion)
             if obstacle.shape != obstacle_t.SPHERE and self.turns.get(obstacle.id) != turn:
@@ -133,14 +149,17 @@ class ObstacleNodes:
         moving = [obstacle for obstacle in obstacles if np.linalg.norm(obstacle.velocity) > 0.01]
         set_lines(self.arrows, [arrow_of(obstacle) for obstacle in moving] if self.shows_arrows else NO_LINES)
 
-    def handle_of(self, obstacle):
-        """The node of the obstacle; a new one when its shape has changed."""
+    def handle_of(self, obstacle, numbered):
+        """The node of the obstacle, with its id as a label; a new one when its shape has changed."""
         form = (obstacle.shape, *obstacle.size)
         if self.nodes.get(obstacle.id, (None,))[0] != form:
             self.turns.pop(obstacle.id, None)
             mesh = mesh_of(OBSTACLE_KINDS[obstacle.shape], obstacle.size)
             colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
-            self.nodes[obstacle.id] = form, add_mesh(self.scene, f"/obstacles/{obstacle.id}", mesh, colour)
+            name = f"/obstacles/{obstacle.id}"
+            self.nodes[obstacle.id] = form, add_mesh(self.scene, name, mesh, colour)
+            if numbered and obstacle.id >= 0:
+                self.scene.add_label(f"{name}/number", str(obstacle.id), anchor="center-center")
         return self.nodes[obstacle.id][1]
 
 

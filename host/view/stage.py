@@ -52,19 +52,22 @@ class Stage:
         obstacles = self.arms[0].obstacles(latest) + self.surroundings
         self.obstacle_nodes.shows_arrows = layers.arrows
         self.obstacle_nodes.draw(obstacles)
-        return [self.draw_arm(i, latest, layers, obstacles if colours else None) for i in range(len(self.arms))]
+        return [self.draw_arm(i, latest, layers, obstacles, colours) for i in range(len(self.arms))]
 
-    def draw_arm(self, i, latest, layers, obstacles):
-        """Draws one arm and returns its tool position; None before its first arm state. obstacles: to colour it."""
+    def draw_arm(self, i, latest, layers, obstacles, colours):
+        """Draws one arm and returns its tool position; None before its first arm state."""
         one, nodes, trail = self.arms[i], self.arm_nodes[i], self.trails[i]
         link_poses = one.link_poses(latest)
         if link_poses is None:
             return None
         extend(trail, link_poses[-1][0])
         nodes.place(link_poses)
-        nodes.mark(one.target(latest), trail if layers.trail else [], one.guide(latest))
+        nodes.mark(one.target(latest), trail if layers.trail else [], one.guide(latest),
+                   one.nearest(latest, link_poses, obstacles))
         nodes.show(layers.visuals, layers.shapes)
-        if obstacles is not None:
+        if colours and not one.knows_clearance(latest):
+            nodes.colour(None)
+        elif colours:
             others = [link for other in self.arms if other is not one for link in other.links(latest)]
             near = obstacles + others + one.links_of_others(latest)
             nodes.colour([geometry.clearance_m(shape, link_poses[shape.frame], near) for shape in one.shapes])

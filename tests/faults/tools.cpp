@@ -17,6 +17,12 @@ void spheres_of_a_csv_file_run_from_row_to_row(void**) {
 void a_drawing_is_coloured_by_the_true_clearance(void**) {
   passes("clearances");
 }
+void a_line_leads_from_a_link_to_its_nearest_obstacle(void**) {
+  passes("nearest_lines");
+}
+void no_link_is_coloured_as_safe_while_the_clearance_is_unknown(void**) {
+  passes("unknown_clearance");
+}
 void obstacles_received_by_an_arm_are_drawn_in_the_world_frame(void**) {
   passes("places");
 }
@@ -70,6 +76,9 @@ int main() {
       cmocka_unit_test_teardown(sent_velocities_are_the_derivatives_of_sent_positions, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(spheres_of_a_csv_file_run_from_row_to_row, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_drawing_is_coloured_by_the_true_clearance, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_line_leads_from_a_link_to_its_nearest_obstacle, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(no_link_is_coloured_as_safe_while_the_clearance_is_unknown,
+                                sidestep::test::kill_processes),
       cmocka_unit_test_teardown(obstacles_received_by_an_arm_are_drawn_in_the_world_frame,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_surroundings_of_a_configuration_are_drawn, sidestep::test::kill_processes),

@@ -85,6 +85,40 @@ def clearances():
         assert math.isclose(nearest, expected, abs_tol=5e-3), (shape, nearest)
 
 
+def nearest_lines():
+    """The line from a link to its nearest obstacle has the clearance as length, less the radii at its ends."""
+    link_poses = arm.link_poses(arm.chain(*LWA3), [0.0] * 7)
+    for kind, size, radius_m in ((0, [0.1], 0.1), (1, [0.1, 1.0], 0.1), (2, [0.4, 0.4, 2.0], 0.0)):
+        obstacle = crowds.obstacle(1, kind, size, [0.5, 0, 0.5], [0, 0, 0])
+        for shape in arm.shapes(*LWA3):
+            length_m, (start, end) = geometry.nearest_line(shape, link_poses[shape.frame], obstacle)
+            assert math.isclose(length_m, np.linalg.norm(end - start))
+            least_m = geometry.clearance_m(shape, link_poses[shape.frame], [obstacle])
+            assert math.isclose(length_m - radius_m - shape.size[0], least_m, abs_tol=1e-9), (kind, shape)
+
+
+def unknown_clearance():
+    """Without a current status, or with silent obstacles, the clearance is unknown: no link is coloured as safe."""
+    one, status = ArmView(arm.CONFIG, LWA3), wire.controller_status_t()
+    status.clearance, status.nearest_obstacle, status.nearest_link = 0.3, 4, one.shapes[-1].link
+    ball = crowds.obstacle(4, 0, [0.1], [0.5, 0, 0.5], [0, 0, 0])
+    poses = arm.link_poses(one.chain, [0.0] * 7)
+    latest = wire.Messages(one.channels())
+    assert not one.knows_clearance(latest) and one.nearest(latest, poses, [ball]) is None
+    latest.store("CONTROLLER_STATUS", status.encode(), 10.0)
+    assert one.knows_clearance(latest) and np.allclose(one.nearest(latest, poses, [ball])[1], ball.position)
+    for number in (-1, -2, 5):
+        status.nearest_obstacle = number
+        latest.store("CONTROLLER_STATUS", status.encode(), 10.0)
+        assert one.nearest(latest, poses, [ball]) is None, number
+    latest.store("OBSTACLES", wire.obstacles_t().encode(), 9.0)
+    assert not one.knows_clearance(latest)
+    latest.store("OBSTACLES", wire.obstacles_t().encode(), 10.0)
+    assert one.knows_clearance(latest)
+    latest.store("ARM_STATE", wire.joint_state_t().encode(), 12.0)
+    assert not one.knows_clearance(latest)
+
+
 def quaternions():
     """A rotation converted to a quaternion and back is unchanged."""
     generator = np.random.default_rng(1)
@@ -347,6 +381,7 @@ def watched_texts():
         assert not re.search(r"nan|inf\b|-1|stale", shown), shown
     assert "limited by shield, not realtime;" in "\n".join(watch.lines(latest, ages_s))
     assert watch.lines(latest, {"CONTROLLER_STATUS": 3.2})[0].startswith("stale for 3 s: the controller is silent")
+    assert watch.mode_text(status) == ("FAULT", "fault: no arm state")
     assert watch.lines({}, {}) == ["waiting for CONTROLLER_STATUS"]
     status.self_clearance, status.self_links = math.nan, ["", ""]
     assert "links: distances not measured" in watch.lines(latest, ages_s)
@@ -379,7 +414,8 @@ def hostile_bytes():
         assert wire.decoded(channel, whole) is not None
 
 
-CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, quaternions, places,
+CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
+                                              quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
                                               late_receiver, watched_texts, hostile_bytes, goals)}
