@@ -26,6 +26,7 @@ import control
 import crowds
 import geometry
 import logs
+import panel
 import record
 import report
 import runs
@@ -117,6 +118,17 @@ def unknown_clearance():
     assert one.knows_clearance(latest)
     latest.store("ARM_STATE", wire.joint_state_t().encode(), 12.0)
     assert not one.knows_clearance(latest)
+
+
+def panel_texts():
+    """The panel says how long it waits for which channel, and names no nearest link to a clearance nobody knows."""
+    assert "waiting for LEFT_STATUS for 12 s" in panel.words_of(None, {}, "LEFT_STATUS", 12.3)
+    status = wire.controller_status_t()
+    status.mode, status.message, status.clearance, status.nearest_link = status.TRACK, "tracking", 0.3, "hand"
+    status.nearest_obstacle = 4
+    for age_s, named in ((0.0, True), (0.2, False)):
+        words = panel.words_of(status, {"CONTROLLER_STATUS": 0.0, "OBSTACLES": age_s}, "STATUS", 12.3)
+        assert ("hand and obstacle 4" in words) == named and "tracking" not in words and "TRACK" in words, words
 
 
 def quaternions():
@@ -415,7 +427,7 @@ def hostile_bytes():
 
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
-                                              quaternions, places,
+                                              panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
                                               late_receiver, watched_texts, hostile_bytes, goals)}
