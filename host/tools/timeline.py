@@ -101,15 +101,15 @@ def plot_target_distance(axes, run):
     plots.finish(axes, "Tool to target", 0, ylabel="distance, m", ylim=(0, None))
 
 
-def plot_cycle_time(axes, run):
+def plot_cycle_time(axes, run, period_s):
     """The period, in which a cycle has to end, is a line where it is near enough to be drawn."""
     times_us = run.columns["cycle_time_s"] * 1e6
     longest_us = max(times_us[np.isfinite(times_us)], default=0.0)
     axes.plot(run.columns["t_s"], times_us, color=BLUE, linewidth=1, label=f"longest: {longest_us:.0f} us")
-    if rate_hz := plots.section(run, "control").get("rate_hz"):
-        if longest_us > 0.3e6 / rate_hz:
-            axes.axhline(1e6 / rate_hz, **DASHED)
-        axes.plot([], [], **DASHED, label=f"period of the configuration: {1e6 / rate_hz:.0f} us")
+    if period_s > 0:
+        if longest_us > 0.3e6 * period_s:
+            axes.axhline(period_s * 1e6, **DASHED)
+        axes.plot([], [], **DASHED, label=f"period: {period_s * 1e6:.0f} us")
     plots.finish(axes, "CPU time of a whole cycle", 2, ylabel="time, us", ylim=(0, None))
 
 
@@ -142,6 +142,7 @@ def thinned(run):
 
 def draw(run, limits):
     """The Curves of a run: of logs.run_of(); limits: (positions, velocities), each joints x 2."""
+    period_s = np.median(np.diff(run.columns["t_s"])) if len(run.columns["t_s"]) > 1 else 0.0  # a row is a cycle
     run = thinned(run)
     curves = broken(run)
     figure, panels = plt.subplots(6, **PANELS)
@@ -150,7 +151,7 @@ def draw(run, limits):
     plot_target_distance(panels[2], curves)
     plot_joints(panels[3], curves, r"qd\d+_radps", "speed, rad/s", "Joint velocities", limits[1])
     plot_joints(panels[4], curves, r"q\d+_rad", "position, rad", "Joint positions", limits[0])
-    plot_cycle_time(panels[5], curves)
+    plot_cycle_time(panels[5], curves, period_s)
     for axes in panels:
         axes.tick_params(labelbottom=True)
         axes.set_xlabel("")
