@@ -39,7 +39,7 @@ void wrong_messages_change_nothing(void**) {
   ask(scene, 3);
   ask(scene, control_t::PAUSE, 1.5);
   scene.wander(0.3);
-  assert_true(scene.arm.status().mode == Status::TRACK);
+  assert_true(scene.arm.run_until(Status::TRACK, 1.0));
   assert_int_equal(scene.arm.status().rejected_messages - rejected, 2);
 }
 
