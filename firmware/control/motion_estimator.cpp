@@ -1,8 +1,8 @@
 #include "firmware/control/motion_estimator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace sidestep {
 namespace {
@@ -75,10 +75,9 @@ Vector3 MotionEstimator::Point::velocity_mps(const Vector3& now_m, double now_s)
   const bool follows =
       earlier_.size() > 0 && (now_m - earlier_[0].at_m).norm() <= kFastest_mps * (now_s - earlier_[0].at_s) + kNoise_m;
   if (!follows) begin(now);
-  const bool at_rest = rests(now);
-  const Vector3 slope = slope_mps(now);
+  const Vector3 velocity_mps = rests(now) ? Vector3(Vector3::Zero()) : slope_mps(now);
   remember(now);
-  return at_rest ? Vector3(Vector3::Zero()) : slope;
+  return velocity_mps;
 }
 
 void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
@@ -96,11 +95,7 @@ void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
 
 void MotionEstimator::complete(ObstacleSet& set, double elapsed_s) {
   now_s_ += std::max(0.0, elapsed_s);
-  std::iota(order_.begin(), order_.begin() + set.count, 0);
-  std::sort(order_.begin(), order_.begin() + set.count, [&](int a, int b) {
-    const int32_t id_a = set.obstacles[a].id, id_b = set.obstacles[b].id;
-    return id_a != id_b ? id_a < id_b : a < b;
-  });
+  sort_by_id(set, order_);
   const auto& before = tracks_[current_];
   auto& next = tracks_[1 - current_];
   int b = 0, count = 0, room = kMaxObstacles - set.count;

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "firmware/base/bounded_list.h"
-#include "firmware/model/obstacle.h"
+#include "firmware/control/obstacle_order.h"
 
 namespace sidestep {
 
@@ -61,7 +61,7 @@ class MotionEstimator {
   static void complete(Obstacle& obstacle, Track& track, double now_s);
 
   double now_s_ = 0.0;
-  std::array<int, kMaxObstacles> order_;        ///< indices of the new set, sorted by id
+  ObstacleOrder order_;                         ///< of the new set
   std::array<Track, kMaxObstacles> tracks_[2];  ///< sorted by id. Two buffers: the current list and the next one
   int count_ = 0, current_ = 0;
 };

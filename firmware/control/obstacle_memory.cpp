@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace sidestep {
 namespace {
@@ -40,14 +39,6 @@ double speed_mps(const Obstacle& obstacle) {
 }
 
 }  // namespace
-
-void ObstacleMemory::sort(const ObstacleSet& set) {
-  std::iota(order_.begin(), order_.begin() + set.count, 0);
-  std::sort(order_.begin(), order_.begin() + set.count, [&](int a, int b) {
-    const int32_t id_a = set.obstacles[a].id, id_b = set.obstacles[b].id;
-    return id_a != id_b ? id_a < id_b : a < b;
-  });
-}
 
 bool ObstacleMemory::could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const {
   const double fastest_mps = std::max({speed_bound_mps_, speed_mps(before), speed_mps(now)});
@@ -109,7 +100,7 @@ void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double no
 }
 
 void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double now_s) {
-  sort(set);
+  sort_by_id(set, order_);
   const Remembered& were_vanished = vanished_[current_];
   Remembered& vanished = vanished_[1 - current_];
   vanished.clear();
@@ -136,7 +127,7 @@ void ObstacleMemory::append(const RememberedObstacle& remembered, double now_s, 
 }
 
 void ObstacleMemory::add_remembered(ObstacleSet& set, double elapsed_s, double now_s) {
-  sort(set);
+  sort_by_id(set, order_);
   compare(set, elapsed_s, now_s);
   before_count_ = set.count;
   before_s_ = now_s;

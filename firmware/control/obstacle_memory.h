@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "firmware/base/bounded_list.h"
-#include "firmware/model/obstacle.h"
+#include "firmware/control/obstacle_order.h"
 
 namespace sidestep {
 
@@ -54,7 +54,6 @@ class ObstacleMemory {
   }
 
   bool is_valid(const RememberedObstacle& remembered, double now_s) const;
-  void sort(const ObstacleSet& set);
   void compare(const ObstacleSet& set, double elapsed_s, double now_s);
   bool could_move(const Obstacle& before, const Obstacle& now, double elapsed_s) const;
   void remember(const RememberedObstacle& changed);
@@ -66,9 +65,9 @@ class ObstacleMemory {
   int before_count_ = 0;
   double before_s_ = -HUGE_VAL;
   bool any_set_ = false;
-  std::array<int, kMaxObstacles> order_;  ///< indices of the new set, sorted by id
-  Remembered changed_;                    ///< jumped or shrunk
-  int next_change_ = 0;                   ///< the place to overwrite once the list is full
+  ObstacleOrder order_;     ///< of the new set
+  Remembered changed_;      ///< jumped or shrunk
+  int next_change_ = 0;     ///< the place to overwrite once the list is full
   Remembered vanished_[2];  ///< no longer reported, sorted by id. Two buffers: the current list and the next one
   int current_ = 0;         ///< index of the current list
 };

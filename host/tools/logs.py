@@ -13,8 +13,6 @@ import wire
 FIELDS = {"target_distance": "target_distance_m", "clearance": "clearance_m", "cycle_time": "cycle_time_s",
           "mode": "mode", "fault": "fault", "foresight": "foresight"}  # of the status -> column
 PAUSE_US = 60_000_000  # a step of the time stamps that is longer, or backward, is none of a run
-
-
 EPOCH_US = 1_000_000_000_000_000  # earlier time stamps are those of a clock that does not know the date
 
 

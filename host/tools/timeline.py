@@ -119,7 +119,7 @@ def plot_joints(axes, run, pattern, label, title, limits):
     for limit in np.unique(limits[np.isfinite(limits)]):
         owners = np.flatnonzero((limits == limit).any(axis=1))
         colour = JOINTS[owners[0] % len(JOINTS)] if len(owners) == 1 else BLACK
-        axes.axhline(limit, color=colour, linewidth=1, linestyle=(0, (5, 3)))
+        axes.axhline(limit, **DASHED | {"color": colour})
     axes.plot([], [], **DASHED, label="limits")
     plots.finish(axes, title, len(JOINTS) + 1)
 

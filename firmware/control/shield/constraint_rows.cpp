@@ -127,7 +127,7 @@ class RowMaker {
 
   void add_distance(const NearPair& pair) {
     const double distance_m = pair.now.distance_m;
-    const bool separates = input_.person_weight > 0.0 && is_person(pair);
+    const bool separates = keeps_separation(input_, pair);
     if (distance_m > settings_.range_m && !separates) return;
     const JointVector row = axes_.row(body_of(pair), pair.now.on_arm, pair.now.normal);
     const double least = least_mps(row, sustainable_);
@@ -241,7 +241,6 @@ class RowMaker {
     }
     return speeds_mps;
   }
-  bool is_person(const NearPair& pair) const { return input_.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; }
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.

@@ -77,20 +77,22 @@ Rollout roll_out(const ShieldInput& input, const JointVector& velocity_radps, do
   return rollout;
 }
 
-/// Cost of a joint velocity: its distance from the nominal velocity, and the clearance deficit of its rollout.
+/// Cost of a joint velocity: its distance from the wanted one, and the clearance deficit of its rollout.
 class RolloutCost {
  public:
-  RolloutCost(const ShieldSettings& settings, const ShieldInput& input, const QpObjective& objective)
+  RolloutCost(const ShieldSettings& settings, const ShieldInput& input, const QpObjective& objective,
+              const JointVector& wanted_radps)
       : settings_(settings),
         input_(input),
         objective_(objective),
+        wanted_radps_(wanted_radps),
         threats_(find_threats(settings, input.clearance, input.obstacles)),
         // A valid index: every rollout is kAfter_s longer than closest_s.
         worst_step_(static_cast<int>(threats_.closest_s / kStep_s)) {}
 
   /// Exact below `bound`; otherwise some value of at least `bound`, found with less work.
   double cost(const JointVector& velocity_radps, double bound) {
-    const JointVector difference = velocity_radps - objective_.nominal_radps;
+    const JointVector difference = velocity_radps - wanted_radps_;
     const double tool = (objective_.tool_jacobian * difference).squaredNorm();
     const double joints2 =
         objective_.scale ? difference.cwiseQuotient(*objective_.scale).squaredNorm() : difference.squaredNorm();
@@ -124,6 +126,7 @@ class RolloutCost {
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const QpObjective& objective_;
+  const JointVector& wanted_radps_;
   const Threats threats_;
   int worst_step_;
 };
@@ -162,22 +165,17 @@ bool is_threatened(const ConstraintRows& rows) {
                      [](const ConstraintRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
 }
 
-bool is_person_near(const ShieldInput& input) {
-  const auto& near = input.clearance.near;
-  return std::any_of(near.begin(), near.end(),
-                     [&](const NearPair& pair) { return input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; });
-}
-
 }  // namespace
 
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps) {
   if (!is_threatened(rows)) return {planned_radps, false};
+  const auto& near = input.clearance.near;
+  const bool separates =
+      std::any_of(near.begin(), near.end(), [&](const NearPair& pair) { return keeps_separation(input, pair); });
   // Else the target, from which the separation keeps the arm away, would draw it back.
-  const bool separates = input.person_weight > 0.0 && is_person_near(input);
-  const QpObjective to_plan{planned_radps, objective.tool_jacobian, objective.tool_weight, objective.comfort_weight,
-                            objective.scale};
-  RolloutCost rollout_cost(settings, input, separates ? to_plan : objective);
+  const JointVector& wanted_radps = separates ? planned_radps : objective.nominal_radps;
+  RolloutCost rollout_cost(settings, input, objective, wanted_radps);
   if (rollout_cost.clearance_deficit_m(planned_radps, 0.0) <= 0.0) return {planned_radps, false};
   JointVector best = planned_radps;
   double best_cost = std::numeric_limits<double>::infinity();

@@ -24,6 +24,11 @@ struct ShieldInput {
   double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
 };
 
+/// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
+inline bool keeps_separation(const ShieldInput& input, const NearPair& pair) {
+  return input.person_weight > 0.0 && input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson;
+}
+
 /// The result of the first programme: the joint velocity that the arm is to reach, before acceleration limits, and
 /// whether evasion replaced it (evasion.h).
 struct Plan {

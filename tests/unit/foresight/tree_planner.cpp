@@ -182,10 +182,16 @@ void check_clear_in_time(const Snapshot& snapshot, const Guide& guide, const Obs
   }
 }
 
-/// A ball flies through the middle of the way while the arm would be there.
-void a_plan_lets_a_moving_obstacle_pass(void**) {
-  Random random(4);
+/// Of plans past a mover: how many trials had one in the way, and for how many of them there is a plan, all of which
+/// keep clear.
+struct Passes {
   int blocked = 0, found = 0;
+};
+
+/// make_mover(tool_m, after_s): an obstacle in the way of an arm whose tool is at that place then.
+template <typename MakeMover>
+Passes plan_past(Random& random, const MakeMover& make_mover) {
+  Passes passes;
   for (int trial = 0; trial < 30; ++trial) {
     const auto snapshot = random_world(random);
     const auto planner = std::make_unique<TreePlanner>(model());
@@ -193,46 +199,43 @@ void a_plan_lets_a_moving_obstacle_pass(void**) {
     if (alone.knots == 0) continue;
     const double middle_s = 0.5 * (alone.end_s() - snapshot->now_s);
     const LinkPoses there = forward_kinematics(lwa3(), point_of(alone, snapshot->now_s + middle_s).position_rad);
-    const Vector3 velocity_mps = 0.5 * random.direction();
-    Obstacle ball = sphere_obstacle(there.tool_position - middle_s * velocity_mps, 0.05);
-    ball.velocity_mps = velocity_mps;
-    add(*snapshot, ball);
+    const Obstacle mover = make_mover(there.tool_position, middle_s);
+    add(*snapshot, mover);
     planner->reset();
     const Guide guide = plan(*planner, *snapshot);
-    ++blocked;
+    ++passes.blocked;
     if (guide.knots == 0) continue;
-    ++found;
-    check_clear_in_time(*snapshot, guide, ball, trial);
+    ++passes.found;
+    check_clear_in_time(*snapshot, guide, mover, trial);
   }
-  check(found * 2 > blocked, "%d of %d", found, blocked);
+  return passes;
+}
+
+/// A ball flies through the middle of the way while the arm would be there.
+void a_plan_lets_a_moving_obstacle_pass(void**) {
+  Random random(4);
+  const Passes passes = plan_past(random, [&](const Vector3& tool_m, double after_s) {
+    const Vector3 velocity_mps = 0.5 * random.direction();
+    Obstacle ball = sphere_obstacle(tool_m - after_s * velocity_mps, 0.05);
+    ball.velocity_mps = velocity_mps;
+    return ball;
+  });
+  check(passes.found * 2 > passes.blocked, "%d of %d", passes.found, passes.blocked);
 }
 
 /// A board at rest beside the way turns into it while the arm would be there.
 void a_plan_lets_a_board_that_turns_on_the_spot_pass(void**) {
   Random random(5);
-  int blocked = 0, found = 0;
-  for (int trial = 0; trial < 30; ++trial) {
-    const auto snapshot = random_world(random);
-    const auto planner = std::make_unique<TreePlanner>(model());
-    const Guide alone = plan(*planner, *snapshot);
-    if (alone.knots == 0) continue;
-    const double middle_s = 0.5 * (alone.end_s() - snapshot->now_s);
-    const LinkPoses there = forward_kinematics(lwa3(), point_of(alone, snapshot->now_s + middle_s).position_rad);
+  const Passes passes = plan_past(random, [&](const Vector3& tool_m, double after_s) {
     const double beside_m = 0.2;
     const Vector3 axis = random.direction(), toward = axis.unitOrthogonal();
     const Matrix3 then = Quaternion::FromTwoVectors(Vector3::UnitX(), toward).toRotationMatrix();
-    Obstacle board = box_obstacle(there.tool_position - beside_m * toward, Eigen::AngleAxisd(-M_PI / 2, axis) * then,
-                                  {0.5, 0.02, 0.02});
-    board.angular_velocity_radps = M_PI / 2 / middle_s * axis;
-    add(*snapshot, board);
-    planner->reset();
-    const Guide guide = plan(*planner, *snapshot);
-    ++blocked;
-    if (guide.knots == 0) continue;
-    ++found;
-    check_clear_in_time(*snapshot, guide, board, trial);
-  }
-  check(found * 3 > blocked, "%d of %d", found, blocked);
+    Obstacle board =
+        box_obstacle(tool_m - beside_m * toward, Eigen::AngleAxisd(-M_PI / 2, axis) * then, {0.5, 0.02, 0.02});
+    board.angular_velocity_radps = M_PI / 2 / after_s * axis;
+    return board;
+  });
+  check(passes.found * 3 > passes.blocked, "%d of %d", passes.found, passes.blocked);
 }
 
 }  // namespace
