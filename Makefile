@@ -59,7 +59,7 @@ sources   = $(filter-out %/main.cpp,$(shell find -H $(1) -name '*.cpp'))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
 
 FIRMWARE := $(call objects,$(call sources,firmware))
-SIM      := $(call objects,$(call sources,host/sim))
+SIM      := $(call objects,$(call sources,host/sim host/people))
 RELAY    := $(call objects,$(call sources,host/relay))
 REPLAY   := $(call objects,$(wildcard host/replay/*.cpp))
 CAMPAIGN := $(call objects,$(call sources,host/campaign))

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "host/campaign/capsule_path.h"
 #include "host/campaign/family.h"
 #include "host/campaign/furniture/timed_path.h"
 #include "host/campaign/judge_arm.h"
 #include "host/campaign/sphere_path.h"
+#include "host/people/capsule_path.h"
 
 namespace sidestep::campaign {
 

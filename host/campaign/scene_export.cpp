@@ -46,12 +46,8 @@ std::string target_yaml(const Scene& scene) {
 }
 
 std::string solid_yaml(const sim::Obstacle& solid, size_t id) {
-  const Vector3& size_m = solid.solid.size_m;
-  const std::string shape = solid.solid.shape == sim::Shape::kBox
-                                ? fmt::format("shape: box, edges_m: {}", list(size_m))
-                                : fmt::format("shape: cylinder, radius_m: {}, height_m: {}", size_m.x(), size_m.y());
-  return fmt::format("  - {{id: {}, {}, position_m: {}, velocity_mps: [0, 0, 0], quaternion: {}}}\n", id, shape,
-                     list(solid.motion.position_m), quaternion(solid.motion.orientation));
+  return fmt::format("  - {{id: {}, {}, position_m: {}, velocity_mps: [0, 0, 0], quaternion: {}}}\n", id,
+                     to_yaml(solid.solid), list(solid.motion.position_m), quaternion(solid.motion.orientation));
 }
 
 std::string obstacles_yaml(const Scene& scene) {

@@ -22,6 +22,7 @@ std::atomic<bool> interrupted{false};
 
 struct Options {
   std::string scenario, lcm_url, log_file, csv_file;
+  bool list_obstacles = false;
   bool lockstep = false;
   bool quiet = false;
   double patience_s = 30.0;
@@ -29,6 +30,8 @@ struct Options {
 
 void declare(sidestep::CommandLine& app, Options& options) {
   app.add_option("--scenario", options.scenario, "scenario file, such as paper-c.yaml").required().type_name("FILE");
+  app.add_flag("--list-obstacles", options.list_obstacles,
+               "print ids, shapes and kinds of the scenario's obstacles and of the parts of its people, and exit");
   app.add_flag("--lockstep", options.lockstep,
                "run on the arm's clock: deterministic, as fast as possible (the controller also needs --lockstep)");
   app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)").type_name("URL");
@@ -85,6 +88,15 @@ std::string csv_file_of(const Scenario& scenario, const std::filesystem::path& f
   return file.parent_path() / (file.stem().string() + '-' + scenario.arm + file.extension().string());
 }
 
+/// In the form of a scenario's list `obstacles`, without the motion.
+int list_obstacles(const std::string& file) {
+  const std::vector<Scenario> arms = load_scenario(file);
+  for (const Obstacle& obstacle : arms.front().world.obstacles)
+    fmt::print("- {{id: {}, {}, kind: {}}}\n", obstacle.id, to_yaml(obstacle.solid),
+               obstacle.is_person ? "person" : "thing");
+  return kHeld;
+}
+
 int simulate(const Options& options) {
   std::vector<Run> runs;
   std::vector<sidestep::Channels> channels;
@@ -116,7 +128,7 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {
-    return simulate(options);
+    return options.list_obstacles ? list_obstacles(options.scenario) : simulate(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "sim: {}\n", error.what());
     return kBadInput;

@@ -43,7 +43,8 @@ std::string header(int joints, int obstacles) {
                       ",tool_x_m,tool_y_m,tool_z_m,target_x_m,target_y_m,target_z_m"
                       ",target_distance_m,clearance_m,axis_distance_m";
   for (int i = 1; i <= obstacles; ++i) {
-    names += fmt::format(",o{0}_x_m,o{0}_y_m,o{0}_z_m,o{0}_axis_distance_m,o{0}_clearance_m", i);
+    names += fmt::format(
+        ",o{0}_x_m,o{0}_y_m,o{0}_z_m,o{0}_qw,o{0}_qx,o{0}_qy,o{0}_qz,o{0}_axis_distance_m,o{0}_clearance_m", i);
   }
   names += ",mode,cycle_time_s,beta,damping,foresight,guide_horizon_s";
   for (int i = 1; i <= Status{}.guide_tool_m.cols(); ++i)
@@ -72,7 +73,9 @@ void CsvFile::write(const Row& row, const Truth& truth) {
   line.add(row.tool_m).add(target_m(row.world));
   line.add(row.target_distance_m).add(row.nearest.clearance_m).add(row.axis_distance_m);
   for (const Obstacle& obstacle : row.world.obstacles) {
-    line.add(obstacle.motion.position_m).add(truth.axis_distance_m(obstacle)).add(truth.clearance_m(obstacle));
+    const Eigen::Quaterniond& q = obstacle.motion.orientation;
+    line.add(obstacle.motion.position_m).add(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+    line.add(truth.axis_distance_m(obstacle)).add(truth.clearance_m(obstacle));
   }
   line.add(static_cast<double>(row.status.mode)).add(row.status.cycle_time_s);
   line.add(row.status.beta).add(row.status.damping);

@@ -1,6 +1,7 @@
 #include "host/sim/solid.h"
 
 #include <fcl/fcl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,22 @@ double capsule_distance_m(const Solid& other, const Eigen::Isometry3d& base_from
 }
 
 }  // namespace
+
+std::string to_yaml(const Solid& solid) {
+  const Eigen::Vector3d& size_m = solid.size_m;
+  switch (solid.shape) {
+    case Shape::kCapsule:
+      return fmt::format("shape: capsule, radius_m: {}, length_m: {}", size_m.x(), size_m.y());
+    case Shape::kCylinder:
+      return fmt::format("shape: cylinder, radius_m: {}, height_m: {}", size_m.x(), size_m.y());
+    case Shape::kBox:
+      return fmt::format("shape: box, edges_m: [{}, {}, {}]", size_m.x(), size_m.y(), size_m.z());
+    case Shape::kSphere:
+    case Shape::kMesh:
+      break;
+  }
+  return fmt::format("shape: sphere, radius_m: {}", size_m.x());
+}
 
 double bounding_radius_m(const Solid& solid) {
   const Eigen::Vector3d& size = solid.size_m;

@@ -33,6 +33,9 @@ struct CentredMesh {
 CentredMesh load_mesh_solid(const std::string& name, const std::string& urdf_file,
                             const std::vector<std::string>& package_path, const Eigen::Vector3d& scale);
 
+/// Shape and size in the form of a scenario: "shape: sphere, radius_m: 0.1". Not for meshes.
+std::string to_yaml(const Solid& solid);
+
 /// Radius of the smallest sphere around the centre that contains the solid, m.
 double bounding_radius_m(const Solid& solid);
 

@@ -16,7 +16,20 @@ void translate(Motion& motion, double dt_s) {
   motion.velocity_mps = current.velocity_mps;
 }
 
+/// A capsule does not turn about its axis.
+void follow(Motion& motion, const CapsuleMotion& now) {
+  const Eigen::Vector3d axis_m = now.capsule.end - now.capsule.start, before = motion.orientation * Vector3::UnitZ();
+  motion.position_m = now.capsule.centre();
+  motion.orientation = (Eigen::Quaterniond::FromTwoVectors(before, axis_m) * motion.orientation).normalized();
+  motion.velocity_mps = now.centre_mps();
+  motion.angular_velocity_radps = now.angular_radps();
+}
+
 void advance(Motion& motion, double dt_s) {
+  if (motion.limb) {
+    motion.path_s += dt_s;
+    return follow(motion, motion.limb->at(motion.path_s));
+  }
   translate(motion, dt_s);
   const double speed_radps = motion.angular_velocity_radps.norm();
   if (speed_radps <= 0.0) return;
@@ -30,6 +43,7 @@ Motion transformed(const Eigen::Isometry3d& b_from_a, Motion motion) {
   motion.velocity_mps = rotation * motion.velocity_mps;
   motion.orientation = Eigen::Quaterniond(rotation) * motion.orientation;
   motion.angular_velocity_radps = rotation * motion.angular_velocity_radps;
+  if (motion.limb) motion.limb = std::make_shared<const CapsulePath>(motion.limb->transformed(b_from_a));
   if (!motion.path) return motion;
   Path path = *motion.path;
   for (Waypoint& waypoint : path) {
@@ -58,6 +72,13 @@ std::vector<Obstacle> World::all() const {
 
 Eigen::Isometry3d Motion::base_from_body() const {
   return Eigen::Translation3d(position_m) * orientation;
+}
+
+Motion motion_of_limb(CapsulePath path) {
+  Motion motion;
+  motion.limb = std::make_shared<const CapsulePath>(std::move(path));
+  follow(motion, motion.limb->at(0.0));
+  return motion;
 }
 
 World advanced(const World& world, double dt_s) {

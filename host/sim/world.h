@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/people/capsule_path.h"
 #include "host/sim/joints.h"
 #include "host/sim/path.h"
 #include "host/sim/solid.h"
@@ -12,17 +13,21 @@
 namespace sidestep::sim {
 
 /// Pose and velocity of a rigid body. Its velocity is constant or, with a path, follows the path; its angular velocity
-/// is constant. Base frame.
+/// is constant. A limb of a person moves and turns as its capsule does. Base frame.
 struct Motion {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
-  std::shared_ptr<const Path> path;  ///< null: constant velocity; shared by all copies
-  double path_s = 0.0;               ///< current time on the path
+  std::shared_ptr<const Path> path;         ///< null: constant velocity; shared by all copies
+  std::shared_ptr<const CapsulePath> limb;  ///< null: no limb of a person; shared by all copies
+  double path_s = 0.0;                      ///< current time on the path, or of the limb
 
   Eigen::Isometry3d base_from_body() const;
 };
+
+/// At t = 0 of the path.
+Motion motion_of_limb(CapsulePath path);
 
 struct Obstacle {
   int32_t id = 0;

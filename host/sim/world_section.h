@@ -10,7 +10,8 @@ namespace sidestep::sim {
 /// The section `target` of a scenario.
 Target read_target(YamlSection section);
 
-/// The list `obstacles` of a scenario.
+/// The list `obstacles` of a scenario, then the parts of the persons of the optional list `people`: for each person a
+/// capsule for each part of the body (host/people/body.h), in the order of BodyPart, with ids from the given one on.
 std::vector<Obstacle> read_obstacles(YamlSection& scenario);
 
 /// The list `grasp` of a scenario with these obstacles; empty when absent.

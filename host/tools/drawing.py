@@ -113,35 +113,43 @@ def moves(run, number):
 
 def draw_obstacles(painter, run, row):
     """The obstacles near the arm at a row with their numbers, and the tracks of those that move."""
-    for i, one in enumerate(solids.obstacle_solids(run, row)):
-        centres = in_world(run.scenario, run.path(f"o{i + 1}"))
-        if moves(run, i):
+    there = solids.obstacle_solids(run, row)
+    for parts in outcome.bodies(run):
+        first = parts[0]
+        centres = in_world(run.scenario, run.path(f"o{first + 1}"))
+        if moves(run, first):
             painter.line(centres, fits=False, color=MOVING, linestyle=(0, (1, 1)), linewidth=2, zorder=1,
                          label="track of an obstacle")
-        if run.columns[f"o{i + 1}_clearance_m"][row] > NEAR_M:
+        away_m = [run.columns[f"o{i + 1}_clearance_m"][row] for i in parts]
+        if min(away_m) > NEAR_M:
             continue
-        if painter.view is OBLIQUE and max(one.size) < LARGE_M:
-            draw_shadow(painter, one)
-        if moves(run, i):
-            draw_moving(painter, one, centres[max(row - 5, 0)], centres[min(row + 5, len(centres) - 1)])
-        else:
-            painter.solid(one, RESTING, 0.6, fits=max(one.size) < LARGE_M)
-            painter.legend[AT_REST] = Patch(facecolor=RESTING, edgecolor="0.4")
-        name = outcome.obstacle_name(run, i).removeprefix("obstacle ")
-        painter.axes.text(*painter.view.flat(one.position), name, fontweight="bold", ha="center", va="center",
+        for i, part_away_m in zip(parts, away_m):
+            draw_obstacle(painter, there[i], moves(run, first), part_away_m < NEAR_M)
+        if moves(run, first):
+            draw_direction(painter, there[first], centres[max(row - 5, 0)], centres[min(row + 5, len(centres) - 1)])
+        name = outcome.obstacle_name(run, first).removeprefix("obstacle ")
+        painter.axes.text(*painter.view.flat(there[first].position), name, fontweight="bold", ha="center", va="center",
                           zorder=7, path_effects=HALO, clip_on=True)
 
 
-def draw_shadow(painter, one):
+def draw_obstacle(painter, one, moving, near):
+    """near: the picture is made large enough for it, unless it is large itself."""
+    small = max(one.size) < LARGE_M
+    if painter.view is OBLIQUE and small:
+        draw_shadow(painter, one, near)
+    painter.solid(one, MOVING if moving else RESTING, 0.75 if moving else 0.6, fits=small and near)
+    painter.legend["moving obstacle" if moving else AT_REST] = Patch(facecolor=MOVING if moving else RESTING,
+                                                                     edgecolor="0.3" if moving else "0.4")
+
+
+def draw_shadow(painter, one, fits):
     """What is straight below a solid on the floor, which shows where it is."""
-    painter.patch(-1000, solids.surface(one) * [1, 1, 0], True, facecolor="0.9", edgecolor="none")
+    painter.patch(-1000, solids.surface(one) * [1, 1, 0], fits, facecolor="0.9", edgecolor="none")
     painter.legend["below an obstacle, on the floor"] = Patch(facecolor="0.9", edgecolor="none")
 
 
-def draw_moving(painter, one, before, after):
-    """An obstacle with an arrow in the direction in which it moves at the time."""
-    painter.solid(one, MOVING, 0.75)
-    painter.legend["moving obstacle"] = Patch(facecolor=MOVING, edgecolor="0.3")
+def draw_direction(painter, one, before, after):
+    """An arrow in the direction in which an obstacle moves at the time."""
     start, end = painter.view.flat([before, after])
     if np.linalg.norm(end - start) > 1e-3:
         middle = painter.view.flat(one.position)

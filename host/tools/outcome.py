@@ -32,7 +32,16 @@ def obstacle_count(run):
 
 def obstacle_name(run, number):
     """number: from 0."""
-    return f"{'person' if run.scenario['obstacles'][number].get('kind') == 'person' else 'obstacle'} {number + 1}"
+    entry = run.scenario["obstacles"][number]
+    return entry.get("body") or f"{'person' if entry.get('kind') == 'person' else 'obstacle'} {number + 1}"
+
+
+def bodies(run):
+    """The numbers of the obstacles, from 0, as lists: the parts of a person belong together."""
+    found = {}
+    for number, entry in enumerate(run.scenario["obstacles"]):
+        found.setdefault(entry.get("body", number), []).append(number)
+    return list(found.values())
 
 
 def has_resting(run):
@@ -78,9 +87,9 @@ def nearest(run, row, clearance_m):
 
     The points of an overlap are near the deepest ones, so that its depth is not compared.
     """
-    recorded = {obstacle_name(run, i): run.columns[f"o{i + 1}_clearance_m"][row] for i in range(obstacle_count(run))}
-    recorded[OTHER_ARM] = run.columns["neighbour_clearance_m"][row]
-    names = [name for name, value_m in recorded.items() if abs(value_m - clearance_m) < 1e-9]
+    recorded = [(obstacle_name(run, i), run.columns[f"o{i + 1}_clearance_m"][row]) for i in range(obstacle_count(run))]
+    recorded.append((OTHER_ARM, run.columns["neighbour_clearance_m"][row]))
+    names = [name for name, value_m in recorded if abs(value_m - clearance_m) < 1e-9]
     there = [(name, one) for name, one in others(run, row) if not names or name in names]
     arm = solids.arm_solids(run, row) + [solids.obstacle_solids(run, row)[i] for i in held(run, row)]
     found = [(*solids.nearest_points(link, one), name) for name, one in there for link in arm]

@@ -118,11 +118,12 @@ def finish_clearance(axes, run, lowest_m, title, legend_columns, resting=True):
 
 
 def curves_of_clearance(run):
-    """(label, text at the curve, colour, m at every row) of each obstacle, the surroundings and the other arm."""
+    """(label, text at the curve, colour, m at every row) of each obstacle or person, the surroundings, the other arm."""
     columns, curves = run.columns, []
-    for i in range(outcome.obstacle_count(run)):
-        label, colour = ("moving obstacle", MOVING) if drawing.moves(run, i) else ("obstacle at rest", GREY)
-        curves.append((label, str(i + 1), colour, columns[f"o{i + 1}_clearance_m"]))
+    for parts in outcome.bodies(run):
+        label, colour = ("moving obstacle", MOVING) if drawing.moves(run, parts[0]) else ("obstacle at rest", GREY)
+        name = outcome.obstacle_name(run, parts[0]).removeprefix("obstacle ")
+        curves.append((label, name, colour, np.min([columns[f"o{i + 1}_clearance_m"] for i in parts], axis=0)))
     if solids.surroundings(run):
         least_m = columns["clearance_m"]
         nearer = np.all([least_m < values_m for *_, values_m in curves], axis=0)

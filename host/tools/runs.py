@@ -99,9 +99,24 @@ def load_scenario(file):
         check(file, scenario, duration_s=(int, float))
     if "arms" in scenario:
         check(file, scenario, arms=list)
+    if "people" in scenario:
+        scenario["obstacles"] = obstacles_of(file, scenario)
     for arm in scenario.get("arms", [scenario]):
         check(file, arm, config=str, robot=dict, **({"name": str} if "arms" in scenario else {}))
     return scenario
+
+
+def obstacles_of(file, scenario):
+    """The list `obstacles` of a scenario, followed by the parts of its people without motion; `body` names the person."""
+    listed = subprocess.run([BUILD / "sim", "--scenario", file, "--list-obstacles"], capture_output=True, text=True)
+    if listed.returncode:
+        raise RunFailed(listed.stderr.strip())
+    own, people = scenario.get("obstacles") or [], scenario["people"]
+    parts = yaml.safe_load(listed.stdout)[len(own):]
+    for i, part in enumerate(parts):
+        number = i * len(people) // len(parts)
+        part["body"] = "person" if len(people) == 1 else f"person {number + 1}"
+    return own + parts
 
 
 def check(file, section, **kinds):

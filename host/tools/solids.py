@@ -112,22 +112,20 @@ def arm_solids(run, row):
     return found
 
 
-def resting(entry):
-    """Kind, size and rotation of an entry of `obstacles` or `surroundings`."""
+def shape_of(entry):
+    """Kind and size of an entry of `obstacles` or `surroundings`."""
     size = entry.get("edges_m") or [entry[key] for key in ("radius_m", "length_m", "height_m") if key in entry]
-    return entry["shape"], tuple(size), arm.rotation_of_quaternion(entry.get("quaternion", (1, 0, 0, 0)))
+    return entry["shape"], tuple(size)
 
 
 def obstacle_solids(run, row):
-    """The obstacles at a row. Their orientations are those of the scenario, which are in the world frame."""
+    """The obstacles at a row."""
+    base_position, base_rotation = base_of(run.scenario)
     found = []
     for i, entry in enumerate(run.scenario["obstacles"], 1):
-        kind, size, rotation = resting(entry)
-        turn = np.array(entry.get("angular_velocity_radps", (0, 0, 0)), float) * run.columns["t_s"][row]
-        if np.linalg.norm(turn) > 0:
-            rotation = arm.rotation_about(turn, np.linalg.norm(turn)) @ rotation
-        position = in_world(run.scenario, [run.columns[f"o{i}_{axis}_m"][row] for axis in "xyz"])
-        found.append(Solid(kind, size, position, rotation))
+        position = [run.columns[f"o{i}_{axis}_m"][row] for axis in "xyz"]
+        rotation = arm.rotation_of_quaternion([run.columns[f"o{i}_q{part}"][row] for part in "wxyz"])
+        found.append(Solid(*shape_of(entry), base_rotation @ position + base_position, base_rotation @ rotation))
     return found
 
 
@@ -135,8 +133,9 @@ def surroundings(run):
     base_position, base_rotation = base_of(run.scenario)
     found = []
     for entry in (load(config_of(run.scenario)) or {}).get("surroundings") or []:
-        kind, size, rotation = resting(entry)
-        found.append(Solid(kind, size, base_rotation @ entry["position_m"] + base_position, base_rotation @ rotation))
+        rotation = arm.rotation_of_quaternion(entry.get("quaternion", (1, 0, 0, 0)))
+        found.append(Solid(*shape_of(entry), base_rotation @ entry["position_m"] + base_position,
+                           base_rotation @ rotation))
     return found
 
 

@@ -9,16 +9,6 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kSample_s = 0.01;
-
-Posture standing(const Anatomy& anatomy, const Vector3& floor_m, double heading_rad) {
-  Posture posture;
-  posture.floor_m = floor_m;
-  posture.heading_rad = heading_rad;
-  for (size_t side : {0u, 1u}) posture.hand_m[side] = hanging_hand_m(anatomy, side);
-  return posture;
-}
-
 /// Angles of shoulder and elbow oscillate once a stride; the elbow bends as the arm swings forward.
 Vector3 swinging_hand_m(const Anatomy& anatomy, size_t side, double swing_rad, double swing) {
   const double shoulder_rad = 0.04 + swing_rad * swing, elbow_rad = 0.35 + 1.1 * swing_rad * swing;
@@ -29,6 +19,11 @@ Vector3 swinging_hand_m(const Anatomy& anatomy, size_t side, double swing_rad, d
 }
 
 }  // namespace
+
+Anatomy draw_anatomy(Random& random) {
+  const double stature_m = std::clamp(1.72 + 0.09 * random.normal(), 1.52, 1.95);
+  return {stature_m, random.uniform(0.045, 0.050)};
+}
 
 Behaviour walking(Random& random, const Anatomy& anatomy, const Vector3& floor_m, double heading_rad, double speed_mps,
                   double end_s) {
@@ -147,23 +142,6 @@ Behaviour gesturing(Random& random, const Anatomy& anatomy, const Vector3& floor
     return now;
   };
   return {posture, std::max(first.end_s(), second.end_s())};
-}
-
-std::vector<CapsulePath> record(const Anatomy& anatomy, const Behaviour& behaviour, double duration_s) {
-  std::array<std::vector<CapsulePath::Ends>, kBodyParts> samples;
-  std::array<double, kBodyParts> radius_m{};
-  const int last = static_cast<int>(std::ceil(duration_s / kSample_s)) + 1;
-  for (int k = 0; k <= last; ++k) {
-    const auto body = capsules_of(anatomy, behaviour.at(k * kSample_s));
-    for (size_t part = 0; part < body.size(); ++part) {
-      samples[part].push_back({body[part].start, body[part].end});
-      radius_m[part] = body[part].radius_m;
-    }
-  }
-  std::vector<CapsulePath> paths;
-  for (size_t part = 0; part < samples.size(); ++part)
-    paths.emplace_back(radius_m[part], kSample_s, std::move(samples[part]));
-  return paths;
 }
 
 }  // namespace sidestep::campaign

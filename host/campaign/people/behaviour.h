@@ -1,12 +1,13 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
-#include "host/campaign/capsule_path.h"
-#include "host/campaign/people/body.h"
+#include "host/campaign/random.h"
+#include "host/people/postures.h"
 
 namespace sidestep::campaign {
+
+Anatomy draw_anatomy(Random& random);
 
 /// What a person does: the posture over time. Person's frame and base frame as in Posture.
 struct Behaviour {
@@ -28,8 +29,5 @@ Behaviour reaching(Random& random, const Anatomy& anatomy, const Vector3& floor_
 /// (person's frame, within the arm's reach); then the arms hang again.
 Behaviour gesturing(Random& random, const Anatomy& anatomy, const Vector3& floor_m, double heading_rad, size_t side,
                     const Vector3& point_m, double strike_s);
-
-/// The capsules of a person from t = 0 to duration_s.
-std::vector<CapsulePath> record(const Anatomy& anatomy, const Behaviour& behaviour, double duration_s);
 
 }  // namespace sidestep::campaign

@@ -1,6 +1,6 @@
 #include "host/campaign/people/camera.h"
 
-#include "host/campaign/people/body.h"
+#include "host/people/body.h"
 
 namespace sidestep::campaign {
 namespace {

@@ -109,7 +109,7 @@ bool add_person(Random& random, Scene& scene, People people, double floor_m) {
     const Aim aim = draw_aim(random, scene);
     const auto behaviour = draw_behaviour(random, anatomy, people, aim, floor_m);
     if (!behaviour || behaviour->end_s + kRest_s > scene.duration_s()) continue;
-    const std::vector<CapsulePath> person = record(anatomy, *behaviour, scene.duration_s());
+    const std::vector<CapsulePath> person = record(anatomy, behaviour->at, scene.duration_s());
     if (!keeps_apart(scene, person) || !trunks_keep_apart(scene, person)) continue;
     scene.capsules.insert(scene.capsules.end(), person.begin(), person.end());
     return true;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/people/postures.h"
+
 namespace sidestep::campaign {
 
 void PointMoves::move_to(const Eigen::Vector3d& point_m, double duration_s) {
@@ -14,7 +16,7 @@ Eigen::Vector3d PointMoves::at(double t_s) const {
   for (const Move& move : moves_) {
     if (t_s <= move.begin_s) break;
     const double u = std::min(1.0, (t_s - move.begin_s) / move.duration_s);
-    point_m += u * u * u * (10.0 + u * (-15.0 + u * 6.0)) * (move.to_m - point_m);
+    point_m += minimum_jerk(u) * (move.to_m - point_m);
   }
   return point_m;
 }

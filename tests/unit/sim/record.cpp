@@ -60,7 +60,7 @@ void a_csv_row_has_every_column_and_full_precision(void**) {
   check(!std::getline(in, rest), "more than two lines");
   std::filesystem::remove(file);
   const auto names = split(header), cells = split(values);
-  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 5 + 6 + 8 * 3 + 2);
+  assert_int_equal(names.size(), 1 + 3 * 7 + 9 + 2 * 9 + 6 + 8 * 3 + 2);
   assert_string_equal(names.back().c_str(), "self_clearance_m");
   assert_int_equal(cells.size(), names.size());
   const auto value = [&](const std::string& name) {
@@ -70,6 +70,8 @@ void a_csv_row_has_every_column_and_full_precision(void**) {
   check_near(value("q2_rad"), row.q_rad[1], 0);
   check_near(value("tool_z_m"), row.tool_m.z(), 0);
   check_near(value("o2_x_m"), 1, 0);
+  check_near(value("o2_qw"), row.world.obstacles[1].motion.orientation.w(), 0);
+  check_near(value("o2_qz"), row.world.obstacles[1].motion.orientation.z(), 0);
   check_near(value("clearance_m"), std::min(value("o1_clearance_m"), value("o2_clearance_m")), 0);
   check_near(value("axis_distance_m"), std::min(value("o1_axis_distance_m"), value("o2_axis_distance_m")), 0);
   check_near(value("guide8_z_m"), 3, 0);

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "host/people/body.h"
+
 #include "tests/support/check.h"
 
 using namespace sidestep::sim;
@@ -114,6 +116,33 @@ void waypoints_follow_the_position_and_velocity_at_the_start(void**) {
   }
 }
 
+constexpr const char* kPerson = R"(people:
+  - id: 20
+    stature_m: 1.7
+    postures:
+      - {at_s: 0.5, position_m: [1, 2, -0.5], heading_rad: 3.14159265, right_hand_m: [0.4, -0.1, 1.0]}
+      - {at_s: 1, lean_rad: 0.1}
+      - {at_s: 1.4, hands: hanging, sitting: 1}
+title: two)";
+
+void the_parts_of_a_person_are_obstacles_that_move(void**) {
+  const World start = load(changed("title: two", kPerson)).world, end = advanced(start, 2.0);
+  assert_int_equal(start.obstacles.size(), 3 + sidestep::kBodyParts);
+  for (int part = 0; part < sidestep::kBodyParts; ++part) {
+    const Obstacle& obstacle = start.obstacles[static_cast<size_t>(3 + part)];
+    assert_int_equal(obstacle.id, 20 + part);
+    assert_true(obstacle.is_person && obstacle.solid.shape == Shape::kCapsule);
+  }
+  const auto part_of = [](const World& world, int part) -> const Motion& {
+    return world.obstacles[static_cast<size_t>(3 + part)].motion;
+  };
+  // The person's x axis is -x, the hand 1 m above the floor.
+  check_near(part_of(start, sidestep::kHandRight).position_m, Vector3d(0.6, 2.1, 0.5), 1e-3);
+  const Motion& thigh = part_of(end, sidestep::kThighLeft);
+  check_near(thigh.orientation * Vector3d::UnitZ(), Vector3d(-1, 0, 0), 1e-6);
+  check(part_of(end, sidestep::kHandRight).position_m.z() < 0.0, "the hand does not hang");
+}
+
 struct Mistake {
   const char* from;
   const char* to;
@@ -220,6 +249,22 @@ const Mistake kMistakes[] = {
     {"title: two", "grasp: [{at_s: 1, held: 4}]\ntitle: two", "grasp[0].held", "list"},
     {"title: two", "grasp: [{at_s: 1, allowed: [1.5]}]\ntitle: two", "grasp[0].allowed", "whole numbers"},
     {"title: two", "grasp: [{at_s: 2}, {at_s: 1}]\ntitle: two", "grasp[1].at_s", "must not decrease"},
+    {"title: two", "people: [{id: 1, stature_m: 1.7}]\ntitle: two", "people[0].postures", "at least one"},
+    {"title: two", "people: [{id: 1, postures: []}]\ntitle: two", "people[0].stature_m", "missing"},
+    {"title: two", "people: [{id: 1, stature_m: 17}]\ntitle: two", "people[0].stature_m", "from 1 to 2.2"},
+    {"title: two", "people: [{id: 1, stature_m: 1.7, postures: [{at_s: 0, position_m: [0, 0, 0]}]}]\ntitle: two",
+     "people[0].postures[0].heading_rad", "missing"},
+    {"title: two",
+     "people: [{id: 1, stature_m: 1.7, postures: [{at_s: 1, position_m: [0, 0, 0], heading_rad: 0}, {at_s: 1}]}]\n"
+     "title: two",
+     "people[0].postures[1].at_s", "must increase"},
+    {"title: two",
+     "people: [{id: 1, stature_m: 1.7, postures: [{at_s: 1, position_m: [0, 0, 0], heading_rad: 0, hands: up}]}]\n"
+     "title: two",
+     "people[0].postures[0].hands", "'up'"},
+    {"title: two",
+     "people: [{id: 8, stature_m: 1.7, postures: [{at_s: 1, position_m: [0, 0, 0], heading_rad: 0}]}]\ntitle: two",
+     "people[0].id", "9 is used twice"},
     {"clearance_min_m", "clearance", "expect.clearance", "unknown key"},
     {"axis_distance_m: 0.2", "axis_distance_m: far", "published.axis_distance_m", "finite number"},
     {"title: two", "? [a]\n: b\ntitle: two", "(not a text)", "unknown key"},
@@ -342,6 +387,7 @@ int main() {
       cmocka_unit_test(every_value_of_a_scenario_is_read),
       cmocka_unit_test(a_target_may_be_a_posture),
       cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
+      cmocka_unit_test(the_parts_of_a_person_are_obstacles_that_move),
       cmocka_unit_test(every_mistake_is_refused_with_one_line_that_names_file_and_key),
       cmocka_unit_test(files_that_are_no_scenario_are_refused_with_one_line),
       cmocka_unit_test(each_of_several_arms_has_the_world_in_its_base_frame),

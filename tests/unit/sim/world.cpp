@@ -3,6 +3,8 @@
 #include "tests/support/check.h"
 
 using namespace sidestep::sim;
+using sidestep::CapsuleMotion;
+using sidestep::CapsulePath;
 
 namespace {
 
@@ -133,6 +135,46 @@ void small_steps_along_a_path_end_at_the_same_position(void**) {
   check_near(stepped.target->motion.velocity_mps, curved_after(0.7).velocity_mps, 1e-12);
 }
 
+/// A limb of 0.3 m that turns about z and moves along x.
+CapsulePath swinging_limb() {
+  std::vector<CapsulePath::Ends> samples;
+  for (int k = 0; k <= 200; ++k) {
+    const double t_s = 0.01 * k, x_m = 0.2 * std::sin(2.0 * t_s), angle_rad = 1.5 * t_s;
+    const Eigen::Vector3d start_m(x_m, 0.1, 0.8);
+    samples.push_back({start_m, start_m + 0.3 * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.2)});
+  }
+  return {0.05, 0.01, samples};
+}
+
+World world_with_limb() {
+  World world;
+  world.obstacles = {{1, {Shape::kCapsule, {0.05, 0.3, 0}}, motion_of_limb(swinging_limb()), true}};
+  return world;
+}
+
+void a_limb_lies_and_moves_as_its_capsule(void**) {
+  World stepped = world_with_limb();
+  for (int i = 0; i < 150; ++i) stepped = advanced(stepped, 0.01);
+  const Motion& motion = stepped.obstacles[0].motion;
+  const CapsuleMotion truth = swinging_limb().at(1.5);
+  const Eigen::Vector3d axis = (truth.capsule.end - truth.capsule.start).normalized();
+  check_near(motion.position_m, truth.capsule.centre(), 1e-9);
+  check_near(motion.orientation * Eigen::Vector3d::UnitZ(), axis, 1e-9);
+  check_near(motion.velocity_mps, truth.centre_mps(), 1e-6);
+  check_near(motion.angular_velocity_radps, truth.angular_radps(), 1e-6);
+}
+
+void a_limb_is_the_same_in_another_frame(void**) {
+  const Eigen::Isometry3d pose =
+      Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 2).normalized());
+  const Motion first = transformed(pose, advanced(world_with_limb(), 0.8)).obstacles[0].motion,
+               second = advanced(transformed(pose, world_with_limb()), 0.8).obstacles[0].motion;
+  check_near(second.position_m, first.position_m, 1e-12);
+  check_near(second.orientation * Eigen::Vector3d::UnitZ(), first.orientation * Eigen::Vector3d::UnitZ(), 1e-12);
+  check_near(second.velocity_mps, first.velocity_mps, 1e-12);
+  check_near(second.angular_velocity_radps, first.angular_velocity_radps, 1e-12);
+}
+
 }  // namespace
 
 int main() {
@@ -148,6 +190,8 @@ int main() {
       cmocka_unit_test(after_its_end_a_path_continues_at_constant_velocity),
       cmocka_unit_test(a_target_follows_its_path_with_constant_angular_velocity),
       cmocka_unit_test(small_steps_along_a_path_end_at_the_same_position),
+      cmocka_unit_test(a_limb_lies_and_moves_as_its_capsule),
+      cmocka_unit_test(a_limb_is_the_same_in_another_frame),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -4,9 +4,8 @@
 
 #include "tests/support/check.h"
 
+using namespace sidestep;
 using namespace sidestep::campaign;
-using sidestep::Capsule;
-using sidestep::Vector3;
 
 namespace {
 
@@ -43,7 +42,7 @@ void walkers_move_as_measured(void**) {
   for (int person = 0; person < kPersons; ++person) {
     const Anatomy anatomy = draw_anatomy(random);
     const double speed_mps = random.uniform(1.05, 1.45);
-    const auto body = record(anatomy, walking(random, anatomy, Vector3::Zero(), 0.7, speed_mps, 5.0), 5.0);
+    const auto body = record(anatomy, walking(random, anatomy, Vector3::Zero(), 0.7, speed_mps, 5.0).at, 5.0);
     for (const BodyPart part : {kHandLeft, kHandRight}) hands.add(body[part], 0.1, 4.9);
     for (const BodyPart part : {kForearmLeft, kForearmRight}) forearms.add(body[part], 0.1, 4.9);
     heads.add(body[kHead], 0.1, 4.9);
@@ -67,7 +66,7 @@ void gestures_are_as_quick_as_measured_with_the_body_at_rest(void**) {
     const size_t side = static_cast<size_t>(person % 2);
     const Vector3 in_front_m = shoulder_m(anatomy, side) + 0.75 * anatomy.reach_m() * Vector3(0.9, 0.2, -0.1);
     const Behaviour behaviour = gesturing(random, anatomy, Vector3::Zero(), 1.0, side, in_front_m, 2.0);
-    const auto body = record(anatomy, behaviour, 8.0);
+    const auto body = record(anatomy, behaviour.at, 8.0);
     Figures hand, rest;
     hand.add(body[kHandLeft + side], 0.0, 8.0);
     for (const BodyPart part : {kTorso, kHead, kShoulders, kThighLeft}) rest.add(body[part], 0.0, 8.0);
@@ -85,7 +84,7 @@ void a_reaching_hand_gets_to_its_point_in_time_and_comes_back(void**) {
     const Vector3 point_m(random.uniform(0.6, 1.1) * anatomy.reach_m(), shoulder_m(anatomy, side).y(),
                           anatomy.shoulder_height_m() - 0.2);
     const Behaviour behaviour = reaching(random, anatomy, {1, 2, -0.7}, 0.0, side, point_m, 3.0);
-    const auto body = record(anatomy, behaviour, 9.0);
+    const auto body = record(anatomy, behaviour.at, 9.0);
     const CapsulePath& hand = body[kHandLeft + side];
     check_near(hand.at(3.0).capsule.centre(), Vector3(point_m + Vector3(1, 2, -0.7)), 0.03);
     check_near(hand.at(9.0).capsule.centre(), hand.at(0.0).capsule.centre(), 1e-6);

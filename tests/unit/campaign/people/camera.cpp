@@ -1,15 +1,12 @@
 #include "host/campaign/people/camera.h"
 
-#include "host/campaign/people/body.h"
 #include "host/campaign/scene_maker.h"
 #include "host/campaign/sensing.h"
+#include "host/people/body.h"
 #include "tests/support/check.h"
 
+using namespace sidestep;
 using namespace sidestep::campaign;
-using sidestep::Kind;
-using sidestep::Obstacle;
-using sidestep::Shape;
-using sidestep::Vector3;
 
 namespace {
 

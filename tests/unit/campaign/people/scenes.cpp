@@ -1,14 +1,14 @@
-#include "host/campaign/people/body.h"
 #include "host/campaign/plain_tracking.h"
+#include "host/campaign/random.h"
 #include "host/campaign/scene_export.h"
 #include "host/campaign/scene_maker.h"
 #include "host/campaign/segment.h"
 #include "host/campaign/urdf_arm.h"
+#include "host/people/body.h"
 #include "tests/support/check.h"
 
+using namespace sidestep;
 using namespace sidestep::campaign;
-using sidestep::Capsule;
-using sidestep::Vector3;
 
 namespace {
 

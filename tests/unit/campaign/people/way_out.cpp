@@ -6,8 +6,8 @@
 #include "tests/support/check.h"
 #include "tests/support/constant_controller.h"
 
+using namespace sidestep;
 using namespace sidestep::campaign;
-using sidestep::Vector3;
 using sidestep::test::ConstantController;
 
 namespace {

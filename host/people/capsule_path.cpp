@@ -1,8 +1,8 @@
-#include "host/campaign/capsule_path.h"
+#include "host/people/capsule_path.h"
 
 #include <algorithm>
 
-namespace sidestep::campaign {
+namespace sidestep {
 namespace {
 
 /// Position and velocity on the cubic from p with velocity v to q with velocity w, in duration_s; u in 0..1.
@@ -26,6 +26,12 @@ Vector3 CapsuleMotion::angular_radps() const {
 CapsulePath::CapsulePath(double radius_m, double period_s, std::vector<Ends> samples)
     : radius_m_(radius_m), period_s_(period_s), samples_(std::move(samples)) {}
 
+CapsulePath CapsulePath::transformed(const Eigen::Isometry3d& b_from_a) const {
+  CapsulePath path = *this;
+  for (Ends& ends : path.samples_) ends = {b_from_a * ends.start_m, b_from_a * ends.end_m};
+  return path;
+}
+
 CapsulePath::Ends CapsulePath::slope_mps(size_t sample) const {
   const size_t before = sample > 0 ? sample - 1 : 0, after = std::min(sample + 1, samples_.size() - 1);
   const double dt_s = static_cast<double>(after - before) * period_s_;
@@ -48,4 +54,4 @@ CapsuleMotion CapsulePath::at(double t_s) const {
   return motion;
 }
 
-}  // namespace sidestep::campaign
+}  // namespace sidestep

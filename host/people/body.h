@@ -3,11 +3,10 @@
 #include <array>
 
 #include "firmware/model/capsule.h"
-#include "host/campaign/random.h"
 
-namespace sidestep::campaign {
+namespace sidestep {
 
-/// The capsules of a person, in the order of obstacles. Left parts first.
+/// The capsules of a person, in the order of obstacles; left parts first.
 enum BodyPart {
   kTorso,
   kShoulders,
@@ -44,8 +43,6 @@ struct Anatomy {
   double reach_m() const { return upper_arm_m() + forearm_m() + 0.5 * hand_m(); }
 };
 
-Anatomy draw_anatomy(Random& random);
-
 /// Index of a side: left 0, right 1. The sign of its y axis.
 constexpr double sign_of(size_t side) {
   return side == 0 ? 1.0 : -1.0;
@@ -73,4 +70,4 @@ Vector3 hanging_hand_m(const Anatomy& anatomy, size_t side);
 /// The person's capsules, base frame.
 std::array<Capsule, kBodyParts> capsules_of(const Anatomy& anatomy, const Posture& posture);
 
-}  // namespace sidestep::campaign
+}  // namespace sidestep

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "firmware/model/capsule.h"
 
-namespace sidestep::campaign {
+namespace sidestep {
 
 /// A capsule and the velocities of the ends of its axis, base frame.
 struct CapsuleMotion {
@@ -29,6 +30,9 @@ class CapsulePath {
 
   CapsuleMotion at(double t_s) const;
 
+  /// The same path, given in frame a, in frame b; the frames do not move against each other.
+  CapsulePath transformed(const Eigen::Isometry3d& b_from_a) const;
+
  private:
   /// Velocities of the ends at a sample: central differences.
   Ends slope_mps(size_t sample) const;
@@ -37,4 +41,4 @@ class CapsulePath {
   std::vector<Ends> samples_;
 };
 
-}  // namespace sidestep::campaign
+}  // namespace sidestep

@@ -1,9 +1,8 @@
-#include "host/campaign/capsule_path.h"
+#include "host/people/capsule_path.h"
 
 #include "tests/support/check.h"
 
-using namespace sidestep::campaign;
-using sidestep::Vector3;
+using namespace sidestep;
 
 namespace {
 
@@ -50,6 +49,14 @@ void before_the_start_and_after_the_end_the_capsule_stays(void**) {
   check_near(path.at(9.0).end_mps, Vector3::Zero(), 0.0);
 }
 
+void a_transformed_path_has_the_transformed_capsules(void**) {
+  const Eigen::Isometry3d pose = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Vector3(1, 2, 2).normalized());
+  const CapsuleMotion before = swinging().at(0.7), after = swinging().transformed(pose).at(0.7);
+  check_near(after.capsule.start, Vector3(pose * before.capsule.start), 1e-12);
+  check_near(after.capsule.end, Vector3(pose * before.capsule.end), 1e-12);
+  check_near(after.end_mps, Vector3(pose.linear() * before.end_mps), 1e-12);
+}
+
 }  // namespace
 
 int main() {
@@ -58,6 +65,7 @@ int main() {
       cmocka_unit_test(velocities_are_the_derivatives_of_the_ends),
       cmocka_unit_test(linear_and_angular_velocity_are_those_of_the_motion),
       cmocka_unit_test(before_the_start_and_after_the_end_the_capsule_stays),
+      cmocka_unit_test(a_transformed_path_has_the_transformed_capsules),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

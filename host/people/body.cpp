@@ -1,10 +1,10 @@
-#include "host/campaign/people/body.h"
+#include "host/people/body.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace sidestep::campaign {
+namespace sidestep {
 namespace {
 
 constexpr double kTorsoRadius_m = 0.15, kShoulderRadius_m = 0.08, kHeadRadius_m = 0.10;
@@ -53,11 +53,6 @@ void place_leg(const Anatomy& anatomy, const Posture& posture, size_t side, Body
 
 }  // namespace
 
-Anatomy draw_anatomy(Random& random) {
-  const double stature_m = std::clamp(1.72 + 0.09 * random.normal(), 1.52, 1.95);
-  return {stature_m, random.uniform(0.045, 0.050)};
-}
-
 Vector3 shoulder_m(const Anatomy& anatomy, size_t side) {
   return {0.0, sign_of(side) * anatomy.half_shoulders_m(), anatomy.shoulder_height_m()};
 }
@@ -88,4 +83,4 @@ Body capsules_of(const Anatomy& anatomy, const Posture& posture) {
   return body;
 }
 
-}  // namespace sidestep::campaign
+}  // namespace sidestep
