@@ -75,7 +75,7 @@ Vector3 MotionEstimator::Point::velocity_mps(const Vector3& now_m, double now_s)
   const bool follows =
       earlier_.size() > 0 && (now_m - earlier_[0].at_m).norm() <= kFastest_mps * (now_s - earlier_[0].at_s) + kNoise_m;
   if (!follows) begin(now);
-  const Vector3 velocity_mps = rests(now) ? Vector3(Vector3::Zero()) : slope_mps(now);
+  Vector3 velocity_mps = rests(now) ? Vector3(Vector3::Zero()) : slope_mps(now);
   remember(now);
   return velocity_mps;
 }

@@ -14,7 +14,8 @@ class Expectation {
   void set(const Snapshot& from, const Forecast& forecast);
   void clear() { valid_ = false; }
 
-  /// Whether the snapshot is at most kForecastPath_s later than `from`, in the same mode, and deviates little:
+  /// Whether the snapshot is in the same mode, at most kForecastPath_s later than `from`, at most 0.2 s where an
+  /// obstacle moves, and deviates little:
   ///   obstacles   the same ones, each within 10 mm and 0.05 m/s of its extrapolation, of the same size within 10 mm
   ///   target      within 5 mm and 0.02 m/s of predicted_target(), the orientation within 0.03 rad; a posture within
   ///               0.005 rad (times Arm::joint_scale) per joint
@@ -30,6 +31,7 @@ class Expectation {
 
   JointVector joint_scale_;
   bool valid_ = false;
+  double lasts_s_ = 0.0;  ///< how long the forecast may be relied on
   bool tracking_ = false;
   double at_s_ = 0.0;
   Target target_;

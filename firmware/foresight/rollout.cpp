@@ -10,8 +10,11 @@
 namespace sidestep {
 namespace {
 
-// A coarse period bounds the work of one rollout. The period and the costs are tuned on the witnessed campaign.
-constexpr double kPeriod_s = 0.03;
+// At the controller's own period a rollout is what will happen, if the arm is ideal and the obstacles are exact; at
+// another one it soon evades otherwise than the arm. A coarse period after that bounds the work of one rollout. The
+// periods and the costs are tuned on the witnessed campaign and the adversarial search.
+constexpr double kFinePeriod_s = 0.01, kCoarsePeriod_s = 0.03;
+constexpr double kFine_s = 0.6;
 
 constexpr double kArrived_m = 0.01;
 constexpr double kArrived_rad = 0.05;
@@ -71,22 +74,24 @@ bool is_same_goal(const Target& a, const Target& b, const JointVector& joint_sca
          (!a.tracks_orientation || a.orientation.angularDistance(b.orientation) <= kSameOrientation_rad);
 }
 
-Rollout::Rollout(const Model& model) : coarse_(model) {
-  coarse_.settings.rate_hz = std::min(coarse_.settings.rate_hz, 1.0 / kPeriod_s);
-  coarse_.settings.bridges_outliers = false;  // a lag beyond reach between measured and commanded arm is a jump
-  coarse_.settings.timeouts.control_s = 0.0;  // a forecast assumes full speed and no pause
+Rollout::Rollout(const Model& model)
+    : model_(model),
+      fine_hz_(std::min(model.settings.rate_hz, 1.0 / kFinePeriod_s)),
+      coarse_hz_(std::min(model.settings.rate_hz, 1.0 / kCoarsePeriod_s)) {
+  model_.settings.bridges_outliers = false;  // a lag beyond reach between measured and commanded arm is a jump
+  model_.settings.timeouts.control_s = 0.0;  // a forecast assumes full speed and no pause
   // A snapshot's obstacles are grown already and contain the static ones.
-  ShieldSettings& shield = coarse_.settings.shield;
-  if (!is_exact(coarse_.settings.obstacle_trust)) shield.rest_clearance_m = shield.hard_clearance_m;
-  coarse_.settings.obstacle_trust = {};
-  coarse_.surroundings.clear();
+  ShieldSettings& shield = model_.settings.shield;
+  if (!is_exact(model_.settings.obstacle_trust)) shield.rest_clearance_m = shield.hard_clearance_m;
+  model_.settings.obstacle_trust = {};
+  model_.surroundings.clear();
 }
 
 /// Whether the arm rests and nothing in the rest of the horizon would move it: the guide has ended, the target rests
 /// and no obstacle within reach comes nearer. Away from the target, an obstacle that leaves may also move it.
 bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
                             double after_s, bool arrives) const {
-  if (arm.velocity_radps.cwiseQuotient(coarse_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
+  if (arm.velocity_radps.cwiseQuotient(model_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
   if (guide.knots > 0 && from.now_s + after_s < guide.end_s()) return false;
   if (from.tracking && !rests(predicted_target(from.target, after_s))) return false;
   const auto moves = [](const Obstacle& obstacle) {
@@ -94,8 +99,8 @@ bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const Link
   };
   if (!arrives)
     return std::none_of(obstacles_.obstacles.begin(), obstacles_.obstacles.begin() + obstacles_.count, moves);
-  const Reach reach{coarse_.settings.shield.range_m, coarse_.settings.foresight.horizon_s - after_s};
-  const Clearance clearance = measure_clearance(coarse_.arm, poses, {&obstacles_, 0.0, 0.0, nullptr}, reach);
+  const Reach reach{model_.settings.shield.range_m, model_.settings.foresight.horizon_s - after_s};
+  const Clearance clearance = measure_clearance(model_.arm, poses, {&obstacles_, 0.0, 0.0, nullptr}, reach);
   const auto comes = [&](const NearPair& pair) {
     const Vector3& turning_radps = obstacles_.obstacles[pair.now.obstacle].angular_velocity_radps;
     return pair.approach.time_s > 0.0 || !turning_radps.isZero(0.0);
@@ -104,50 +109,52 @@ bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const Link
 }
 
 Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
-  const double period_s = coarse_.settings.period_s();
-  const int cycles = static_cast<int>(coarse_.settings.foresight.horizon_s / period_s);
+  const double horizon_s = model_.settings.foresight.horizon_s;
   obstacles_.count = from.nearby.count;
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
   State state = from.state;
   ArmState arm = from.arm;
-  const OtherFrames others = place_others(coarse_.arm, from.others, from.attachments);
+  const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   // step() uses only differences of utime.
   arm.utime = state.arm_monitor.accepted.state.utime = state.arm_monitor.before.state.utime = 0;
   Forecast forecast;
-  const ShieldSettings& shield = coarse_.settings.shield;
+  const ShieldSettings& shield = model_.settings.shield;
   const double share = from.tracking ? kCollisionShare : kSqueezedShare, enough_m = share * shield.hard_clearance_m;
   std::array<double, kMaxNearbyObstacles> allowance_m;
   for (int i = 0; i < from.nearby.count; ++i)
     allowance_m[i] =
         share * (shield.hard_clearance_m -
                  required_clearance_m(shield.hard_clearance_m, shield.rest_clearance_m, from.nearby.obstacles[i]));
-  forecast.period_s = period_s;
+  forecast.period_s = 1.0 / fine_hz_;
   double least_m = std::numeric_limits<double>::infinity();
-  for (int cycle = 1; cycle <= cycles; ++cycle) {
-    const double after_s = cycle * period_s, now_s = from.now_s + after_s;
+  for (double after_s = 0.0; after_s < horizon_s - kCoarsePeriod_s / 2.0;) {
+    model_.settings.rate_hz = after_s < kFine_s - kFinePeriod_s / 2.0 ? fine_hz_ : coarse_hz_;
+    const double period_s = model_.settings.period_s();
+    after_s += period_s;
+    const double now_s = from.now_s + after_s;
     const Target target = predicted_target(from.target, after_s);
     advance(obstacles_, period_s);
-    arm.utime += static_cast<int64_t>(period_s * 1e6);
+    arm.utime += std::llround(period_s * 1e6);
     const int64_t count = state.arm_monitor.count + 1;
     Inputs inputs{{&arm, now_s, count}, {}, {&obstacles_, now_s, count}};
     if (from.tracking) inputs.target = {&target, now_s, count};
     inputs.other_joints = {&from.others, now_s, count};
     inputs.attachments = {&from.attachments, now_s, count};
     inputs.guide = &guide;
-    const Result result = step(coarse_, state, inputs, now_s);
+    const Result result = step(model_, state, inputs, now_s);
     state = result.next;
     arm.position_rad = result.command.position_rad;
     arm.velocity_radps = result.command.velocity_radps;
 
-    const LinkPoses poses = forward_kinematics(coarse_.arm, arm.position_rad, others);
-    forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(coarse_.arm, arm.position_rad, target)
+    const LinkPoses poses = forward_kinematics(model_.arm, arm.position_rad, others);
+    forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(model_.arm, arm.position_rad, target)
                                                               : is_at(poses, target));
     if (!forecast.arrives) forecast.cost_s += period_s;
-    least_m = std::min(least_m, clearance_after(coarse_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
+    least_m = std::min(least_m, clearance_after(model_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, enough_m, allowance_m.data()));
     if (after_s <= kForecastPath_s && !forecast.path_rad.is_full()) forecast.path_rad.add(arm.position_rad);
     if (stays_at_rest(from, guide, poses, arm, after_s, forecast.arrives)) {
-      if (!forecast.arrives) forecast.cost_s += (cycles - cycle) * period_s;
+      if (!forecast.arrives) forecast.cost_s += std::max(0.0, horizon_s - after_s);
       break;
     }
   }

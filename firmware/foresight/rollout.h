@@ -22,9 +22,9 @@ struct Forecast {
 };
 
 /// Simulates the next foresight.horizon_s seconds, in the mode of the snapshot, with the controller's own step() and an
-/// ideal arm, which follows each command exactly. The period is 30 ms, unless the controller's is longer. Obstacles
-/// keep their velocities; the target moves as predicted_target(). A simulation ends early when the arm rests and
-/// nothing could move it any more. About 600 kB: lives on the heap.
+/// ideal arm, which follows each command exactly. The period is 10 ms for 0.6 s and then 30 ms, unless the controller's
+/// is longer. Obstacles keep their velocities; the target moves as predicted_target(). A simulation ends early when the
+/// arm rests and nothing could move it any more. About 600 kB: lives on the heap.
 class Rollout {
  public:
   explicit Rollout(const Model& model);
@@ -36,7 +36,8 @@ class Rollout {
   bool stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
                      double after_s, bool arrives) const;
 
-  Model coarse_;
+  Model model_;  ///< its rate is that of the coming step
+  double fine_hz_, coarse_hz_;
   ObstacleSet obstacles_;
 };
 
