@@ -39,6 +39,8 @@ PACKAGES  = $(eval PACKAGES := $(patsubst -I%,-isystem %,$(filter-out -I/usr/inc
 INCLUDES  = -I. -isystem $(BUILD)/lcm $(PACKAGES) -isystem $(EIQUADPROG_INCLUDE)
 LIBS      = $(eval LIBS := -lassimp -lqhullcpp -lqhull_r -lurdfdom_model -lkdl_parser -lorocos-kdl $(call package,--libs,yaml-cpp,-lyaml-cpp) -lconsole_bridge \
               $(call package,--libs,spdlog fmt,-lspdlog -lfmt) $(call package,--libs,lcm,-llcm))$(LIBS)
+# What --version prints; only one file needs it.
+DEFINE_VERSION = -DSIDESTEP_VERSION=$(shell cat VERSION)
 # Only one file includes OMPL.
 OMPL_INCLUDE = $(patsubst -I%,-isystem %,$(filter-out -I/usr/include,$(call package,--cflags-only-I,ompl,-I/usr/include/ompl-1.5)))
 JUDGE_LIBS = -lfcl -lccd -Wl,--push-state,--as-needed -lompl -Wl,--pop-state
@@ -85,8 +87,8 @@ SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
 
-run: all ## play SCENARIO (default paper-c) in real time, then print a table and draw the figures
-	@$(PYTHON) host/tools/play.py host/scenarios/$(SCENARIO).yaml
+run: all ## play SCENARIO (paper-c) with LAW (sidestep or paper) in real time, then print a table and draw the figures
+	@$(PYTHON) host/tools/play.py host/scenarios/$(SCENARIO).yaml --law $(LAW)
 
 test: all $(TESTED) $(TESTS) ## run all tests; the last line is: N passed, N failed
 	@$(PYTHON) tests/run.py $(TESTS)
@@ -174,7 +176,7 @@ report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-l
 ##@ Checking
 
 lint: $(WIRE) $(READY).lint ## check all sources with clang-format and cppcheck, the programs also with clang-tidy
-	@host/setup/lint $(INCLUDES) $(OMPL_INCLUDE)
+	@host/setup/lint $(INCLUDES) $(OMPL_INCLUDE) $(DEFINE_VERSION)
 
 clean: ## remove what was built; keep the virtual environment, runs and figures
 	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/*.a $(BUILD)/*.jar \
@@ -254,6 +256,8 @@ $(BUILD)/obj/%.o: %.cpp $(WIRE) $(BUILD)/.flags $(HEADERS:=.gch) | $(READY)
 # -O0, whatever CXXFLAGS say. The precompiled header was made at another level of optimisation; gcc would not use it.
 $(BUILD)/obj/firmware/base/command_line.o: private FLAGS += -O0
 $(BUILD)/obj/firmware/base/command_line.o: private HEADERS :=
+$(BUILD)/obj/firmware/base/command_line.o: private INCLUDES += $(DEFINE_VERSION)
+$(BUILD)/obj/firmware/base/command_line.o: VERSION
 
 $(BUILD)/obj/host/campaign/furniture/path_planner.o: private INCLUDES += $(OMPL_INCLUDE)
 

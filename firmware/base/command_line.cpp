@@ -5,6 +5,10 @@
 #include <cstdlib>
 #include <set>
 
+// The Makefile defines SIDESTEP_VERSION, without quotes, from the file VERSION.
+#define SIDESTEP_TEXT_OF(tokens) #tokens
+#define SIDESTEP_TEXT(macro) SIDESTEP_TEXT_OF(macro)
+
 namespace sidestep {
 
 Option Option::required() {
@@ -50,7 +54,9 @@ Option Option::one_value_at_a_time() {
   return *this;
 }
 
-CommandLine::CommandLine(const std::string& description) : app_(std::make_shared<CLI::App>(description)) {}
+CommandLine::CommandLine(const std::string& description) : app_(std::make_shared<CLI::App>(description)) {
+  app_->set_version_flag("--version", "Sidestep " SIDESTEP_TEXT(SIDESTEP_VERSION), "print the version and exit");
+}
 
 CommandLine::CommandLine(std::shared_ptr<CLI::App> app) : app_(std::move(app)) {}
 

@@ -58,8 +58,8 @@ class CommandLine {
   /// The text below the options in the help text.
   void footer(const std::string& text);
 
-  /// Returns the exit code when the program has to end now: 0 after --help, 2 after an error, which is printed to
-  /// standard error.
+  /// Returns the exit code when the program has to end now: 0 after --help and --version, 2 after an error, which is
+  /// printed to standard error.
   std::optional<int> parse(int argc, char** argv);
 
  private:

@@ -253,6 +253,10 @@ int play_problems(const Options& options) {
 
 int act(const Options& options) {
   if (options.mover && options.problems.empty()) throw std::runtime_error("--mover: --problems is missing");
+  const bool runs_families = options.problems.empty() && options.merge.empty() && options.search.empty() &&
+                             options.scene.empty() && options.exported_scene.empty();
+  if (options.no_velocities && !runs_families)
+    throw std::runtime_error("--no-velocities: only for the trials of --family");
   if (!options.problems.empty()) return play_problems(options);
   if (!options.merge.empty()) return merge(options);
   if (!options.search.empty()) return run_search(options);

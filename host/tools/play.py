@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Run a scenario: Sidestep in real time, then both laws in lockstep for a table and figures.
+"""Run a scenario: one law in real time, then both laws in lockstep for a table and figures.
 
 The real-time run uses the default LCM network, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
 is that of the simulator: 0 if the scenario's expectations were met, 1 if not.
@@ -43,14 +43,16 @@ def table(paper, sidestep):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path, metavar="SCENARIO.yaml")
-    scenario_file = parser.parse_args().scenario.absolute()
+    parser.add_argument("--law", choices=sorted(runs.LAWS), default="sidestep", help="law of the run in real time")
+    arguments = parser.parse_args()
+    scenario_file = arguments.scenario.absolute()
     scenario, name = runs.load_scenario(scenario_file), scenario_file.stem
 
     if "duration_s" not in scenario:
         raise runs.RunFailed(f"{name} has no end: make play, or make view SCENARIO={name}")
-    print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time", flush=True)
+    print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time with {runs.LAWS[arguments.law]}", flush=True)
     record = runs.RECORDS / f"{name}-realtime.csv"
-    code = runs.execute(scenario_file, "sidestep", record, lockstep=False, log=record.with_suffix(".lcmlog"))
+    code = runs.execute(scenario_file, arguments.law, record, lockstep=False, log=record.with_suffix(".lcmlog"))
     laws = runs.in_parallel(runs.lockstep_runs, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
                                                  for law in runs.LAWS])
     for both in zip(*laws):

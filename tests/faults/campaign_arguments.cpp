@@ -53,6 +53,8 @@ void bad_arguments_end_with_code_2(void**) {
                                 "--search rest --law plain",
                                 "--search rest --config firmware/config/panda.yaml",
                                 "--search rest --count 1 --csv /nowhere/at/all.csv",
+                                "--search rest --count 1 --no-velocities",
+                                "--problems nowhere --no-velocities",
                                 "--scene nowhere.yaml",
                                 "--scene firmware/config/lwa3.yaml",
                                 "--nonsense",

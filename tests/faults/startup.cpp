@@ -1,4 +1,5 @@
 #include <csignal>
+#include <fstream>
 
 #include "tests/support/check.h"
 #include "tests/support/lcm_peer.h"
@@ -90,6 +91,17 @@ void help_names_the_options(void**) {
     check(process.output().find(word) != std::string::npos, "%s is missing", word);
 }
 
+void every_program_tells_its_version(void**) {
+  std::string version;
+  std::ifstream("VERSION") >> version;
+  check(!version.empty(), "the file VERSION is empty");
+  for (const char* program : {"controller", "sim", "campaign", "replay", "relay", "arm-check"}) {
+    Process process({std::string("build/") + program, "--version"});
+    assert_int_equal(process.wait(kLimit_s), 0);
+    check(process.output() == "Sidestep " + version + "\n", "%s: %s", program, process.output().c_str());
+  }
+}
+
 void an_unusable_network_ends_with_code_1_and_a_message(void**) {
   Process process({"build/controller", "--config", "firmware/config/lwa3.yaml", "--lcm-url", "carrier-pigeon://"});
   assert_int_equal(process.wait(kLimit_s), 1);
@@ -140,6 +152,7 @@ int main() {
       cmocka_unit_test_teardown(wrong_arguments_end_with_code_2, test::kill_processes),
       cmocka_unit_test_teardown(an_impossible_waiting_time_of_the_simulator_is_refused, test::kill_processes),
       cmocka_unit_test_teardown(help_names_the_options, test::kill_processes),
+      cmocka_unit_test_teardown(every_program_tells_its_version, test::kill_processes),
       cmocka_unit_test_teardown(an_unusable_network_ends_with_code_1_and_a_message, test::kill_processes),
       cmocka_unit_test_teardown(the_controller_starts_from_urdf_base_and_tip_without_a_config, test::kill_processes),
       cmocka_unit_test_teardown(the_running_loop_is_reported_to_the_service_manager, test::kill_processes),
