@@ -24,6 +24,8 @@ class Expectation {
   bool holds(const Snapshot& now) const;
 
  private:
+  /// How long the forecast may be relied on.
+  double lasts_s() const;
   bool target_as_expected(const Snapshot& now, double after_s) const;
   bool obstacles_as_expected(const Snapshot& now, double after_s) const;
   bool other_joints_as_expected(const Snapshot& now) const;
@@ -31,7 +33,6 @@ class Expectation {
 
   JointVector joint_scale_;
   bool valid_ = false;
-  double lasts_s_ = 0.0;  ///< how long the forecast may be relied on
   bool tracking_ = false;
   double at_s_ = 0.0;
   Target target_;

@@ -94,11 +94,8 @@ bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const Link
   if (arm.velocity_radps.cwiseQuotient(model_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
   if (guide.knots > 0 && from.now_s + after_s < guide.end_s()) return false;
   if (from.tracking && !rests(predicted_target(from.target, after_s))) return false;
-  const auto moves = [](const Obstacle& obstacle) {
-    return !obstacle.velocity_mps.isZero(0.0) || !obstacle.angular_velocity_radps.isZero(0.0);
-  };
   if (!arrives)
-    return std::none_of(obstacles_.obstacles.begin(), obstacles_.obstacles.begin() + obstacles_.count, moves);
+    return std::none_of(obstacles_.obstacles.begin(), obstacles_.obstacles.begin() + obstacles_.count, is_moving);
   const Reach reach{model_.settings.shield.range_m, model_.settings.foresight.horizon_s - after_s};
   const Clearance clearance = measure_clearance(model_.arm, poses, {&obstacles_, 0.0, 0.0, nullptr}, reach);
   const auto comes = [&](const NearPair& pair) {

@@ -213,7 +213,7 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
   BoundedList<double, kMaxNearbyObstacles> allowance_m;
   for (int i = 0; i < from.nearby.count; ++i) {
     const Obstacle& obstacle = from.nearby.obstacles[i];
-    if (fastest_point_mps(obstacle) == 0.0) continue;
+    if (!is_moving(obstacle)) continue;
     movers.add(obstacle);
     allowance_m.add(enough_m - required_clearance_m(enough_m, rest_clearance_m(), obstacle));
   }

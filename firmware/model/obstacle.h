@@ -43,6 +43,11 @@ struct Obstacle {
   Kind kind = Kind::kThing;
 };
 
+/// Whether it moves or turns, however slowly.
+inline bool is_moving(const Obstacle& obstacle) {
+  return !obstacle.velocity_mps.isZero(0.0) || !obstacle.angular_velocity_radps.isZero(0.0);
+}
+
 /// The full set of obstacles at one instant. About 600 kB: it lives in a triple buffer or on the heap, never on a
 /// stack.
 struct ObstacleSet {

@@ -251,17 +251,22 @@ int play_problems(const Options& options) {
   return kDone;
 }
 
+using Action = int (*)(const Options& options);
+
+Action action_of(const Options& options) {
+  if (!options.problems.empty()) return play_problems;
+  if (!options.merge.empty()) return merge;
+  if (!options.search.empty()) return run_search;
+  if (!options.scene.empty()) return run_scene;
+  return options.exported_scene.empty() ? run_trials : write_exported_scene;
+}
+
 int act(const Options& options) {
-  if (options.mover && options.problems.empty()) throw std::runtime_error("--mover: --problems is missing");
-  const bool runs_families = options.problems.empty() && options.merge.empty() && options.search.empty() &&
-                             options.scene.empty() && options.exported_scene.empty();
-  if (options.no_velocities && !runs_families)
+  const Action action = action_of(options);
+  if (options.mover && action != play_problems) throw std::runtime_error("--mover: --problems is missing");
+  if (options.no_velocities && action != run_trials)
     throw std::runtime_error("--no-velocities: only for the trials of --family");
-  if (!options.problems.empty()) return play_problems(options);
-  if (!options.merge.empty()) return merge(options);
-  if (!options.search.empty()) return run_search(options);
-  if (!options.scene.empty()) return run_scene(options);
-  return options.exported_scene.empty() ? run_trials(options) : write_exported_scene(options);
+  return action(options);
 }
 
 }  // namespace

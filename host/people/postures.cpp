@@ -7,8 +7,9 @@ namespace sidestep {
 namespace {
 
 constexpr double kSample_s = 0.01;
-constexpr double kStep_m = 0.55, kStepHip_rad = 0.3,
-                 kStepKnee_rad = 0.5;  // the length of a step, and its largest angles
+
+// The length of a step, and its largest angles.
+constexpr double kStep_m = 0.55, kStepHip_rad = 0.3, kStepKnee_rad = 0.5;
 
 /// Adds whole steps over the way to hips and knees; `share` of it is done.
 void step(double way_m, double share, Posture& posture) {
