@@ -83,6 +83,8 @@ PYPROJECT := $(BUILD)/lcm/python/pyproject.toml
 READY    := $(BUILD)/.ready
 VIEW     := $(READY).view $(BUILD)/.python-view
 TESTED   := $(READY).test $(BUILD)/.python-view
+# Where the Python package example-robot-data has its URDFs.
+ROBOTS    = $(BUILD)/venv/lib/python3*/site-packages/cmeel.prefix/share/example-robot-data/robots
 SPY      := /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar
 
 ##@ The two commands
@@ -122,8 +124,8 @@ all: $(PROGRAMS) $(PYPROJECT) ## set up what is missing and build the programs
 campaign: all ## run the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
-bench: $(BUILD)/bench ## measure the CPU time of a hot step and of the baseline computation
-	@$(BUILD)/bench
+bench: $(BUILD)/bench $(BUILD)/.python-robots ## measure the CPU time of a hot step and of the baseline computation
+	@$(BUILD)/bench $$(ls $(ROBOTS)/panda_description/urdf/panda.urdf 2>/dev/null)
 
 figures: all ## draw the figures of all one-arm scenarios with both laws, and the trade-off over the paper's gains
 	@$(PYTHON) host/tools/figures.py

@@ -1,10 +1,13 @@
-// CPU time of step() among moving spheres, compared with the baseline and with distance only (baseline.h).
+// CPU time of step() among moving spheres, compared with the baseline and with distance only (baseline.h), and of a
+// Panda with meshes, also with its hand in a shelf. The argument is the URDF of that Panda; without one it is left out.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <numeric>
 
 #include "firmware/base/realtime.h"
+#include "firmware/io/config/config.h"
 #include "tests/bench/baseline.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -15,7 +18,7 @@ using namespace sidestep;
 namespace {
 
 constexpr double kLargestSpeed_mps = 0.3;
-constexpr double kTargetCircle_m = 0.15, kTargetRate_radps = 0.5;
+constexpr double kTargetRate_radps = 0.5;
 constexpr int kCalls = 5;         // between two readings of the clock, which take as long as a small cycle
 constexpr int kRepeats = 2;       // of these calls; the least time counts
 constexpr int kStartCycles = 60;  // until the controller tracks
@@ -26,12 +29,33 @@ struct Box {
 const Box kWorkspace{Vector3(-1, -1, 0), Vector3(1, 1, 1.3)};
 const Box kRoom{Vector3(-5, -5, 0), Vector3(5, 5, 3)};
 
+/// An arm in tracking, whose target moves on a vertical circle.
+struct Bench {
+  Model model;
+  JointVector start_rad;
+  Vector3 centre_m;
+  double radius_m;
+};
+
 struct Scene {
   const char* place;
   int spheres;
   const Box& box;
   int cycles;
 };
+
+Bench lwa3(const char* law) {
+  return {test::lwa3_model(law), test::home_rad(), Vector3(-0.35, 0.0, 0.8), 0.15};
+}
+
+/// In its start configuration the hand is between the boards of add_shelf(), and the target moves there.
+Bench panda(const std::string& urdf) {
+  Bench bench{load_config("firmware/config/panda.yaml", {"sidestep", urdf, "panda_link0", "panda_hand"}).model,
+              JointVector(7), Vector3::Zero(), 0.02};
+  bench.start_rad << 0.9145, 0.5576, -1.1004, -1.5147, 2.7787, 2.8490, -1.5134;
+  bench.centre_m = forward_kinematics(bench.model.arm, bench.start_rad).tool_position;
+  return bench;
+}
 
 double cpu_us() {
   return 1e6 * thread_cpu_s();
@@ -95,6 +119,23 @@ void scatter(const Scene& scene, test::ClosedLoop& loop) {
   }
 }
 
+/// A shelf of seven boards with two cans, at rest.
+void add_shelf(test::ClosedLoop& loop) {
+  const auto add = [&loop](const Obstacle& obstacle) {
+    loop.obstacles->obstacles[static_cast<size_t>(loop.obstacles->count)] = obstacle;
+    loop.obstacles->obstacles[static_cast<size_t>(loop.obstacles->count)].id = loop.obstacles->count;
+    ++loop.obstacles->count;
+  };
+  const auto add_board = [&add](const Vector3& centre_m, const Vector3& edges_m) {
+    add(box_obstacle(centre_m, Matrix3::Identity(), edges_m));
+  };
+  for (const double height_m : {0.05, 0.35, 0.75, 1.05}) add_board({0.85, 0, height_m}, {0.4, 0.8, 0.02});
+  for (const double side_m : {-0.41, 0.41}) add_board({0.85, side_m, 0.55}, {0.4, 0.02, 1.0});
+  add_board({1.04, 0, 0.55}, {0.02, 0.8, 1.0});
+  for (const double side_m : {-0.2, 0.2})
+    add(cylinder_obstacle({0.84, side_m, 0.43}, Matrix3::Identity(), 0.035, 0.14));
+}
+
 void bounce(const Box& box, ObstacleSet& spheres) {
   for (int i = 0; i < spheres.count; ++i) {
     Obstacle& sphere = spheres.obstacles[static_cast<size_t>(i)];
@@ -106,10 +147,10 @@ void bounce(const Box& box, ObstacleSet& spheres) {
   }
 }
 
-void lead_target(double now_s, Target& target) {
+void lead_target(const Bench& bench, double now_s, Target& target) {
   const double phase = kTargetRate_radps * now_s;
-  target.position_m = Vector3(-0.35, 0.0, 0.8) + kTargetCircle_m * Vector3(0, std::cos(phase), std::sin(phase));
-  target.velocity_mps = kTargetCircle_m * kTargetRate_radps * Vector3(0, -std::sin(phase), std::cos(phase));
+  target.position_m = bench.centre_m + bench.radius_m * Vector3(0, std::cos(phase), std::sin(phase));
+  target.velocity_mps = bench.radius_m * kTargetRate_radps * Vector3(0, -std::sin(phase), std::cos(phase));
 }
 
 struct Measured {
@@ -118,17 +159,20 @@ struct Measured {
   StageTimes stages;
 };
 
-/// Runs a closed loop with an ideal arm; every cycle has new messages.
-Measured measure(const Scene& scene, const char* law) {
-  test::ClosedLoop loop(test::lwa3_model(law), test::home_rad());
+/// Runs a closed loop with an ideal arm; every cycle has new messages. Without spheres the arm is in the shelf.
+Measured measure(const Scene& scene, const Bench& bench) {
+  test::ClosedLoop loop(bench.model, bench.start_rad);
   loop.sends_target = true;
-  scatter(scene, loop);
+  if (scene.spheres > 0)
+    scatter(scene, loop);
+  else
+    add_shelf(loop);
   Measured measured;
   bench::DistanceOnlyCycle distance_only;
   bench::BaselineCycle baseline;
   for (int cycle = -kStartCycles; cycle < scene.cycles; ++cycle) {
     bounce(scene.box, *loop.obstacles);
-    lead_target(loop.now_s(), loop.target);
+    lead_target(bench, loop.now_s(), loop.target);
     const Inputs inputs = loop.receive();
     Result result;
     const auto time_us = [&](auto& computation) {
@@ -153,7 +197,7 @@ Measured measure(const Scene& scene, const char* law) {
 }
 
 void print_scene(const Scene& scene) {
-  Measured paper = measure(scene, "paper"), sidestep = measure(scene, "sidestep");
+  Measured paper = measure(scene, lwa3("paper")), sidestep = measure(scene, lwa3("sidestep"));
   print(scene, "distance only", sidestep.distance_only_us);
   std::printf("\n");
   print(scene, "baseline", sidestep.baseline_us);
@@ -168,9 +212,20 @@ void print_scene(const Scene& scene) {
   std::fflush(stdout);
 }
 
-}  // namespace
+/// Spheres cross the whole reach of the arm, also the base of it, and touch it there: what counts is the cost.
+void print_panda(const std::string& urdf) {
+  std::printf("Panda with meshes\n");
+  const Bench bench = panda(urdf);
+  for (const Scene& scene : {Scene{"in reach", 10, kWorkspace, 2000}, Scene{"in reach", 50, kWorkspace, 2000},
+                             Scene{"in a shelf", 0, kWorkspace, 2000}}) {
+    Measured measured = measure(scene, bench);
+    print(scene, "sidestep", measured.step_us);
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+}
 
-int main() {
+int run(int argc, char** argv) {
   std::printf("CPU time of a hot step, us; ratios of step() as median / mean\n");
   std::printf("%-11s %5s  %-13s %9s %9s %9s %9s  %19s  %14s  %s\n", "spheres", "", "", "median", "mean", "p99", "max",
               "times distance only", "times baseline", "clearance / law / shield, %");
@@ -178,5 +233,18 @@ int main() {
     const int cycles = spheres <= 50 ? 4000 : 300;
     print_scene({"in the room", spheres, kRoom, cycles});
     print_scene({"in reach", spheres, kWorkspace, cycles});
+  }
+  if (argc > 1) print_panda(argv[1]);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench: %s\n", error.what());
+    return 2;
   }
 }
