@@ -148,7 +148,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
     parser.add_argument("--jobs", type=int, default=1, help="number of parallel binaries (default %(default)s)")
-    parser.add_argument("--time-limit", type=float, default=120, metavar="S",
+    parser.add_argument("--time-limit", type=float, default=360, metavar="S",
                         help="of each binary (default %(default)s)")
     parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND",
                         help="command that runs the binaries, such as qemu")

@@ -15,7 +15,7 @@ inline void check_documents(const std::vector<std::string>& scenarios) {
                                       "host/tools/docs.py", "--check"};
   for (const std::string& name : scenarios) command.insert(command.end(), {"--scenario", name});
   Process python(command);
-  const int code = python.wait(110.0);
+  const int code = python.wait(330.0);
   check(code == 0, "%s", python.output().c_str());
 }
 
