@@ -14,6 +14,8 @@ constexpr double kOverlapShare = 1e-10;   // the same, of the extent of the two 
 constexpr int kMostTranslations = 8;      // of overlapping cores
 constexpr double kOverlapGain_m = 1e-9;   // by which a translation must shorten the next one
 constexpr double kPartedMargin_m = 0.01;  // by which overlapping cores are moved apart to find their points
+constexpr double kNudge_m = 1e-5;         // a translation that parts cores that only touch
+constexpr double kTouching_m = 1e-8;      // an overlap that is no deeper needs no such translation
 
 /// rotation * v and its inverse by columns, which are inlined; Eigen's product of small matrices is a function call.
 EIGEN_ALWAYS_INLINE Vector3 rotated(const Matrix3& rotation, const Vector3& v) {
@@ -243,18 +245,39 @@ class Search {
     for (int round = 0; round < kMostTranslations; ++round) {
       const Vector3 direction = best_direction_;
       const double separation_m = separation_m_;
-      const Vector3 shift = (kPartedMargin_m - separation_m) * direction;
-      b_from_a_m_ -= shift;
-      simplex_ = {};
-      separation_m_ = -std::numeric_limits<double>::infinity();
-      iterate(direction, std::numeric_limits<double>::infinity());
-      const Vector3 parted = best_direction_;
-      b_from_a_m_ += shift;
-      best_direction_ = direction;
-      separation_m_ = separation_m;
-      consider(parted);
+      consider_normal_after(kPartedMargin_m - separation_m, direction);
       if (separation_m_ - separation_m <= kOverlapGain_m) break;
     }
+    if (separation_m_ < -kTouching_m) nudge();
+  }
+
+  /// Considers the normal that the pair has after a translation of a along a unit vector. Returns the separation there.
+  /// The simplex remains that of the translated pair.
+  double consider_normal_after(double by_m, const Vector3& along) {
+    const Vector3 shift = by_m * along, direction = best_direction_;
+    const double separation_m = separation_m_;
+    b_from_a_m_ -= shift;
+    simplex_ = {};
+    separation_m_ = -std::numeric_limits<double>::infinity();
+    iterate(along, std::numeric_limits<double>::infinity());
+    const Vector3 normal = best_direction_;
+    const double after_m = separation_m_;
+    b_from_a_m_ += shift;
+    best_direction_ = direction;
+    separation_m_ = separation_m;
+    consider(normal);
+    return after_m;
+  }
+
+  /// Cores that touch, or overlap by a few micrometres, come apart by a short translation along one of the axes, whose
+  /// angle to the normal of the contact is the smallest: the normal after it is that of the contact. A search that
+  /// began along any other direction may have ended in another local minimum of the depth.
+  void nudge() {
+    const Simplex parted = simplex_;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0})
+        if (consider_normal_after(kNudge_m, side * Vector3::Unit(axis)) > 0.0) return;
+    simplex_ = parted;
   }
 
   /// The normals of the simplex around the origin. Where the cores only touch, one of them is that of the contact.

@@ -18,7 +18,8 @@ struct SolidGap {
 };
 
 /// The algorithm of Gilbert, Johnson and Keerthi (1988) over the cores, at most 64 steps, no allocation, no state
-/// between calls. The distance is exact to 1e-7 m, mostly to 1e-9 m, and never NaN for finite solids.
+/// between calls. The distance is exact to 1e-7 m, mostly to 1e-9 m, of cores that touch to 1e-6 m, and
+/// never NaN for finite solids.
 ///
 /// Overlapping cores have no nearest points. Then the normal is the best of the directions that the iteration tried, of
 /// the face normals of both cores and of `guess`, which bounds the depth from above: no shorter translation along one

@@ -37,14 +37,15 @@ class Random {
     for (int i = 0; i < count; ++i) v[i] = uniform(lower, upper);
     return v;
   }
-  /// A random configuration within this share of the position limits; limits beyond +-pi count as +-pi except for a
-  /// prismatic joint.
+  /// A random configuration within this share of the position limits; of a joint that turns farther, within one turn
+  /// around the middle.
   JointVector configuration(const Arm& arm, double share = 1.0) {
     JointVector q_rad(arm.joints);
     for (int i = 0; i < arm.joints; ++i) {
-      const double turn_rad = arm.prismatic[i] ? HUGE_VAL : M_PI;
-      const double lower = std::max(arm.limits.lower_rad[i], -turn_rad);
-      const double upper = std::min(arm.limits.upper_rad[i], turn_rad);
+      const double centre = 0.5 * (arm.limits.lower_rad[i] + arm.limits.upper_rad[i]);
+      const double around = std::isfinite(centre) ? centre : 0.0, turn_rad = arm.prismatic[i] ? HUGE_VAL : M_PI;
+      const double lower = std::max(arm.limits.lower_rad[i], around - turn_rad);
+      const double upper = std::min(arm.limits.upper_rad[i], around + turn_rad);
       const double middle = 0.5 * (lower + upper), half = 0.5 * share * (upper - lower);
       q_rad[i] = uniform(middle - half, middle + half);
     }

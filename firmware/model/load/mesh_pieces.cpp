@@ -11,14 +11,14 @@
 namespace sidestep {
 namespace {
 
-constexpr double kEnoughP95_m = 0.0045, kEnough_m = 0.010;
-constexpr int kCells = 32;        // of the grid, along each axis
-constexpr int kThinning = 48;     // points of one cell of so many along the longest edge count once in a candidate
-constexpr int kCutsPerPiece = 3;  // so many more parts than pieces, which are then merged
-constexpr double kVolumeShare = 0.003;  // of a part, added to the gain of its cut: large parts first where none gains
-constexpr double kRadius_m = 5e-4;      // vertices are added until the rounding radius is below this
-constexpr double kMargin_m = 1e-9;      // added to radii; more than the rounding error
-constexpr int kSamples = 6000;          // of the surface
+// Where pieces meet, the largest excess is up to 1.2 mm more than that of the samples.
+constexpr double kEnoughP95_m = 0.0045, kEnough_m = 0.0095;
+constexpr int kCells = 32;          // of the grid, along each axis
+constexpr int kThinning = 48;       // points of one cell of so many along the longest edge count once in a candidate
+constexpr int kCutsPerPiece = 3;    // so many more parts than pieces, which are then merged
+constexpr double kRadius_m = 5e-4;  // vertices are added until the rounding radius is below this
+constexpr double kMargin_m = 1e-9;  // added to radii; more than the rounding error
+constexpr int kSamples = 6000;      // of the surface
 
 using Triangle = std::array<Vector3, 3>;
 
@@ -76,15 +76,18 @@ std::vector<Vector3> thinned(const std::vector<Vector3>& points, double cell_m) 
   return kept;
 }
 
-/// The corners below and above a plane, and on both sides the points where edges cross it.
-std::array<std::vector<Vector3>, 2> points_beside(const std::vector<Triangle>& triangles, const Plane& plane) {
+/// The points below and above a plane, and on both sides those where edges of the triangles cross it.
+std::array<std::vector<Vector3>, 2> points_beside(const std::vector<Vector3>& points,
+                                                  const std::vector<Triangle>& triangles, const Plane& plane) {
   std::array<std::vector<Vector3>, 2> sides;
+  for (const Vector3& p : points) {
+    if (p[plane.axis] <= plane.at_m) sides[0].push_back(p);
+    if (p[plane.axis] >= plane.at_m) sides[1].push_back(p);
+  }
   for (const Triangle& triangle : triangles)
     for (size_t i = 0; i < 3; ++i) {
       const Vector3 &a = triangle[i], &b = triangle[(i + 1) % 3];
       const double from_a_m = a[plane.axis] - plane.at_m, from_b_m = b[plane.axis] - plane.at_m;
-      if (from_a_m <= 0.0) sides[0].push_back(a);
-      if (from_a_m >= 0.0) sides[1].push_back(a);
       if (from_a_m * from_b_m >= 0.0) continue;
       for (auto& side : sides) side.emplace_back(a + from_a_m / (from_a_m - from_b_m) * (b - a));
     }
@@ -176,33 +179,28 @@ std::vector<Triangle> inside_of(const Mesh& mesh, const Grid& grid) {
   return inside;
 }
 
-struct Cut {
-  Plane plane{};
-  double gain_m3 = 0.0;
-};
-
 /// The plane that reduces the volume most; where none does, the middle one across the longest edge. The candidates'
 /// volumes are those of thinned points.
-Cut best_cut(const Part& part, const Grid& grid) {
+Plane best_cut(const Part& part, const Grid& grid) {
   Vector3 lower = Vector3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
   for (const Vector3& p : part.hull.vertices) lower = lower.cwiseMin(p), upper = upper.cwiseMax(p);
   const double cell_m = (upper - lower).maxCoeff() / kThinning;
-  const double whole_m3 = convex_hull(thinned(corners_of(part.triangles), cell_m)).volume_m3;
+  const std::vector<Vector3> corners = thinned(corners_of(part.triangles), cell_m);
+  double least_m3 = convex_hull(corners).volume_m3;
   int longest = 0;
   (upper - lower).maxCoeff(&longest);
-  Cut best{{longest, 0.5 * (lower[longest] + upper[longest])}, 0.0};
+  Plane best{longest, 0.5 * (lower[longest] + upper[longest])};
   for (int axis = 0; axis < 3; ++axis) {
     const int stride = upper[axis] - lower[axis] > 0.5 * kCells * grid.cell_m[axis] ? 2 : 1;
     for (int i = 1; i < kCells; ++i) {
       const Plane plane{axis, grid.at_m(axis, i)};
       if (i % stride != 0 || plane.at_m <= lower[axis] || plane.at_m >= upper[axis]) continue;
       double halves_m3 = 0.0;
-      for (const std::vector<Vector3>& side : points_beside(part.triangles, plane))
+      for (const std::vector<Vector3>& side : points_beside(corners, part.triangles, plane))
         if (!side.empty()) halves_m3 += convex_hull(thinned(side, cell_m)).volume_m3;
-      if (whole_m3 - halves_m3 > best.gain_m3) best = {plane, whole_m3 - halves_m3};
+      if (halves_m3 < least_m3) least_m3 = halves_m3, best = plane;
     }
   }
-  best.gain_m3 += kVolumeShare * whole_m3;
   return best;
 }
 
@@ -256,9 +254,11 @@ Part part_of(std::vector<Triangle> triangles) {
 /// A point of the surface of all pieces, with the area that it stands for.
 struct Sample {
   double excess_m, area_m2;
+  size_t piece;
 };
 
-/// Samples of one piece's faces, moved outward by the rounding radius, that lie in no other piece.
+/// Samples of one piece's faces, moved outward by the rounding radius, that lie in no other piece. The corners stand
+/// for no area.
 void sample_surface(const std::vector<ConvexHull>& hulls, const std::vector<double>& radii_m, size_t piece,
                     double per_sample_m2, const MeshDistance& mesh, std::vector<Sample>& samples) {
   const auto is_inside_another = [&](const Vector3& p) {
@@ -271,6 +271,11 @@ void sample_surface(const std::vector<ConvexHull>& hulls, const std::vector<doub
     const Vector3 ab = hulls[piece].vertices[static_cast<size_t>(face.corners[1])] - a;
     const Vector3 ac = hulls[piece].vertices[static_cast<size_t>(face.corners[2])] - a;
     const double area_m2 = 0.5 * ab.cross(ac).norm();
+    const auto add = [&](const Vector3& on_face, double share_m2) {
+      const Vector3 p = on_face + radii_m[piece] * face.normal;
+      if (!is_inside_another(p)) samples.push_back({mesh.to_m(p), share_m2, piece});
+    };
+    for (const Vector3& corner : {a, Vector3(a + ab), Vector3(a + ac)}) add(corner, 0.0);
     const int rows = std::max(1, static_cast<int>(std::lround(std::sqrt(area_m2 / per_sample_m2))));
     // The centres of rows^2 congruent triangles.
     for (int i = 0; i < rows; ++i)
@@ -278,13 +283,13 @@ void sample_surface(const std::vector<ConvexHull>& hulls, const std::vector<doub
         const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
         const int column = j / 2;
         const double u = (i + third) / rows, v = (column + third) / rows;
-        const Vector3 p = a + u * ab + v * ac + radii_m[piece] * face.normal;
-        if (!is_inside_another(p)) samples.push_back({mesh.to_m(p), area_m2 / (rows * rows)});
+        add(a + u * ab + v * ac, area_m2 / (rows * rows));
       }
   }
 }
 
-void measure_excess(const std::vector<ConvexHull>& hulls, const MeshDistance& mesh, MeshPieces& result) {
+/// Returns the piece with the largest excess.
+size_t measure_excess(const std::vector<ConvexHull>& hulls, const MeshDistance& mesh, MeshPieces& result) {
   std::vector<double> radii_m;
   for (const MeshPiece& piece : result.pieces) radii_m.push_back(piece.radius_m);
   double area_m2 = 0.0;
@@ -305,39 +310,36 @@ void measure_excess(const std::vector<ConvexHull>& hulls, const MeshDistance& me
     below_m2 += sample.area_m2;
     if (below_m2 <= 0.95 * outer_m2) result.excess_p95_m = sample.excess_m;
   }
+  return samples.empty() ? 0 : samples.back().piece;
 }
 
 bool is_enough(const MeshPieces& pieces) {
   return pieces.excess_p95_m <= kEnoughP95_m && pieces.excess_m <= kEnough_m;
 }
 
-MeshPieces pieces_of(const std::vector<Part>& parts, const MeshDistance& mesh) {
+MeshPieces pieces_of(const std::vector<Part>& parts, const MeshDistance& mesh, size_t& worst) {
   MeshPieces result;
   std::vector<ConvexHull> hulls;
   for (const Part& part : parts) {
     result.pieces.push_back(part.piece);
     hulls.push_back(part.piece_hull);
   }
-  measure_excess(hulls, mesh, result);
+  worst = measure_excess(hulls, mesh, result);
   return result;
 }
 
-/// Cuts parts one by one, until the excess is small or there are `most`.
-void split(std::vector<Part>& parts, const Grid& grid, size_t most, const MeshDistance& mesh) {
-  std::vector<std::optional<Cut>> cuts{{}};
-  while (parts.size() < most && !is_enough(pieces_of(parts, mesh))) {
-    size_t best = 0;
-    for (size_t i = 0; i < parts.size(); ++i) {
-      if (!cuts[i]) cuts[i] = best_cut(parts[i], grid);
-      if (cuts[i]->gain_m3 > cuts[best]->gain_m3) best = i;
-    }
-    std::vector<Triangle> halves[] = {half_of(parts[best].triangles, cuts[best]->plane, -1.0),
-                                      half_of(parts[best].triangles, cuts[best]->plane, 1.0)};
-    if (halves[0].empty() || halves[1].empty()) return;
-    parts[best] = part_of(std::move(halves[0]));
+/// Cuts the part with the largest excess, until the excess is small or there are `most`. Returns what it has then.
+MeshPieces split(std::vector<Part>& parts, const Grid& grid, size_t most, const MeshDistance& mesh) {
+  for (;;) {
+    size_t worst = 0;
+    MeshPieces pieces = pieces_of(parts, mesh, worst);
+    if (parts.size() >= most || is_enough(pieces)) return pieces;
+    const Plane plane = best_cut(parts[worst], grid);
+    std::vector<Triangle> halves[] = {half_of(parts[worst].triangles, plane, -1.0),
+                                      half_of(parts[worst].triangles, plane, 1.0)};
+    if (halves[0].empty() || halves[1].empty()) return pieces;
+    parts[worst] = part_of(std::move(halves[0]));
     parts.push_back(part_of(std::move(halves[1])));
-    cuts[best].reset();
-    cuts.emplace_back();
   }
 }
 
@@ -370,11 +372,12 @@ MeshPieces split_mesh(const Mesh& mesh, int most) {
   const auto corner = [&](int i) { return mesh.vertices[static_cast<size_t>(i)]; };
   for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({corner(a), corner(b), corner(c)});
   std::vector<Part> parts{part_of(std::move(triangles))};
-  if (most > 1) split(parts, grid, static_cast<size_t>(kCutsPerPiece) * static_cast<size_t>(most), distance);
-  MeshPieces result = pieces_of(parts, distance);
+  const size_t most_parts = most > 1 ? static_cast<size_t>(kCutsPerPiece) * static_cast<size_t>(most) : 1;
+  MeshPieces result = split(parts, grid, most_parts, distance);
   while (parts.size() > 1) {
     merge_best(parts);
-    MeshPieces fewer = pieces_of(parts, distance);
+    size_t worst = 0;
+    MeshPieces fewer = pieces_of(parts, distance, worst);
     if (static_cast<int>(result.pieces.size()) <= most && !is_enough(fewer)) break;
     result = std::move(fewer);
   }

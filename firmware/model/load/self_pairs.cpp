@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include "firmware/base/hash.h"
@@ -16,9 +18,9 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uint64_t kVersion = 4;  // raise it whenever the result changes
+constexpr std::uint64_t kVersion = 5;  // raise it whenever the result changes
 constexpr int kSamples = 5000;
-constexpr double kTouchingShare = 0.5;  // of the samples; a pair that touches in more overlaps by construction
+constexpr double kTouchingShare = 0.5;  // of the samples; two links that touch in more overlap by construction
 constexpr double kForbiddenShare = 0.015;
 constexpr double kLeastClearance_m = 0.001;
 
@@ -37,12 +39,14 @@ bool is_ignored(const Arm& arm, int a, int b, const std::vector<LinkPair>& ignor
   });
 }
 
+/// Within the position limits; of a joint that turns farther, one turn around the middle.
 JointVector sample(const Arm& arm, std::mt19937& random) {
   JointVector q_rad(arm.joints);
   for (int i = 0; i < arm.joints; ++i) {
-    const double turn_rad = arm.prismatic[i] ? HUGE_VAL : M_PI;  // one turn is enough
-    const double lower = std::max(arm.limits.lower_rad[i], -turn_rad);
-    const double upper = std::min(arm.limits.upper_rad[i], turn_rad);
+    const double middle = 0.5 * (arm.limits.lower_rad[i] + arm.limits.upper_rad[i]);
+    const double around = std::isfinite(middle) ? middle : 0.0, turn_rad = arm.prismatic[i] ? HUGE_VAL : M_PI;
+    const double lower = std::max(arm.limits.lower_rad[i], around - turn_rad);
+    const double upper = std::min(arm.limits.upper_rad[i], around + turn_rad);
     q_rad[i] = std::uniform_real_distribution<double>(lower, std::max(lower, upper))(random);
   }
   return q_rad;
@@ -78,6 +82,11 @@ std::vector<SampledPair> sample_pairs(const Arm& arm, const std::vector<LinkPair
     }
   }
   return pairs;
+}
+
+LinkPair links_of(const Arm& arm, const SampledPair& pair) {
+  return std::minmax(arm.shapes[static_cast<size_t>(pair.first)].link,
+                     arm.shapes[static_cast<size_t>(pair.second)].link);
 }
 
 /// The samples in which no pair touches.
@@ -130,14 +139,24 @@ class FreeSamples {
   std::vector<std::vector<double>> sorted_m_;  ///< of each pair, over the free samples, those below clearance_m_
 };
 
+/// The two links of each pair that touch in so many samples that they overlap by construction, whichever of their
+/// shapes do.
+std::set<LinkPair> overlapping_links(const Arm& arm, const std::vector<SampledPair>& pairs) {
+  std::map<LinkPair, std::set<int>> touching;
+  for (const SampledPair& pair : pairs)
+    for (const auto& [sample, distance_m] : pair.near_m)
+      if (distance_m <= 0.0) touching[links_of(arm, pair)].insert(sample);
+  std::set<LinkPair> overlapping;
+  for (const auto& [links, samples] : touching)
+    if (static_cast<double>(samples.size()) > kTouchingShare * kSamples) overlapping.insert(links);
+  return overlapping;
+}
+
 SelfPairs compute(const Arm& arm, double clearance_m, const std::vector<LinkPair>& ignored) {
   std::vector<SampledPair> pairs = sample_pairs(arm, ignored, clearance_m);
   SelfPairs result;
-  const auto overlaps = [&](const SampledPair& pair) {
-    const auto touching =
-        std::count_if(pair.near_m.begin(), pair.near_m.end(), [](const auto& near) { return near.second <= 0.0; });
-    return static_cast<double>(touching) > kTouchingShare * kSamples;
-  };
+  const std::set<LinkPair> overlapping = overlapping_links(arm, pairs);
+  const auto overlaps = [&](const SampledPair& pair) { return overlapping.count(links_of(arm, pair)) > 0; };
   for (const SampledPair& pair : pairs)
     if (overlaps(pair)) result.overlaps.emplace_back(pair.first, pair.second);
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), overlaps), pairs.end());

@@ -14,7 +14,7 @@ using LinkPair = std::pair<std::string, std::string>;
 /// The pairs of shapes of an arm, and what they forbid.
 struct SelfPairs {
   std::vector<SelfPair> kept;
-  std::vector<std::pair<int, int>> overlaps;  ///< pairs that touch by construction: not kept apart
+  std::vector<std::pair<int, int>> overlaps;  ///< pairs of links that touch by construction: not kept apart
   double forbidden_share = 0.0;  ///< of the sampled configurations without contact, those nearer than a clearance
   int worst = -1;                ///< index of the kept pair that forbids most of these; -1: none forbids any
   double worst_share = 0.0;      ///< what it forbids
@@ -24,7 +24,8 @@ struct SelfPairs {
 /// - neighbours: shapes of one body, or of two bodies with no shape on any body between them. A shape below the arm
 ///   is a neighbour only of the other shapes of body 0;
 /// - those of two links that are in `ignored`, in either order;
-/// - overlaps: pairs that touch in more than half of 5000 sampled configurations.
+/// - overlaps: all pairs of two links that touch, with any of their shapes, in more than half of 5000 sampled
+///   configurations.
 ///
 /// Links of some arms pass each other within millimetres by construction. Therefore the clearance of a pair is the
 /// least of clearance_m and a quantile of its own distance over the samples in which no pair touches, but at least
