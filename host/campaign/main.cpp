@@ -32,7 +32,7 @@ struct Options {
   std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output,
               search, scene, problems;
   uint64_t count = 500, seed = 1;
-  int obstacles = 3;
+  int obstacles = 3, decoys = 0;
   double fastest_mps = 0.5;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool quiet = false, smoothness = false, no_cpu = false, resume = false, no_velocities = false, mover = false;
@@ -62,6 +62,11 @@ void declare(CommandLine& app, Options& options) {
   app.add_option("--base", options.base, "first link of the arm").type_name("LINK");
   app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
   app.add_flag("--no-velocities", options.no_velocities, "report obstacles to the controller without their velocities");
+  app.add_option("--decoys", options.decoys,
+                 "dodges: also report so many spheres at rest near the arm, all obstacles in an order that changes in "
+                 "every message")
+      .show_default()
+      .range(0, 1000);
   app.add_option("--shard", options.shard, "run only every N-th scene (or chain of a search), starting at the I-th")
       .show_default()
       .type_name("I/N");
@@ -113,9 +118,11 @@ Shard to_shard(const std::string& text) {
 std::vector<Task> tasks_of(const Options& options) {
   const Shard shard = to_shard(options.shard);
   std::vector<Task> tasks;
-  for (const Family* family : families_of(options.family))
+  for (const Family* family : families_of(options.family)) {
+    if (options.decoys > 0 && !family->dodge) throw std::runtime_error("--decoys: only for dodges");
     for (uint64_t k = shard.index - 1; k < options.count; k += shard.count)
       tasks.push_back({family, scene_seed(options.seed, k)});
+  }
   return tasks;
 }
 
@@ -160,7 +167,7 @@ int run_trials(const Options& options) {
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
   const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm,
-                                !options.no_velocities};
+                                !options.no_velocities, options.decoys};
   const std::vector<Row> rows = run_and_record(tasks, tested, options);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;
@@ -266,6 +273,7 @@ int act(const Options& options) {
   if (options.mover && action != play_problems) throw std::runtime_error("--mover: --problems is missing");
   if (options.no_velocities && action != run_trials)
     throw std::runtime_error("--no-velocities: only for the trials of --family");
+  if (options.decoys > 0 && action != run_trials) throw std::runtime_error("--decoys: only for dodges");
   return action(options);
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "host/campaign/decoys.h"
 #include "host/campaign/parallel.h"
 #include "host/campaign/progress.h"
 #include "host/campaign/scene_maker.h"
@@ -15,6 +16,7 @@ namespace {
 Row trial(const Task& task, const TestedController& tested, const Model* model) {
   Scene scene = make_scene(*task.family, task.seed, tested.arm);
   scene.reports_velocities = tested.velocities;
+  if (tested.decoys > 0) add_decoys(scene, tested.decoys);
   const std::unique_ptr<TrialController> controller =
       make_controller(model, tested.arm, tested.arm.limits(*task.family));
   return {task.family, tested.law, task.seed, run_trial(scene, *controller)};

@@ -24,6 +24,7 @@ struct TestedController {
   const Model* model;  ///< null: plain tracking
   const JudgeArm& arm = lwa3_arm();
   bool velocities = true;  ///< of the obstacles are reported to it
+  int decoys = 0;          ///< more obstacles in each dodge
 };
 
 /// Runs all tasks on `jobs` threads. The rows are in the order of the tasks and, except for CPU times, do not depend on

@@ -34,8 +34,9 @@ struct Scene {
   std::vector<SpherePath> spheres;
   double crossing_s = 0.0;               ///< dodge: the time at which the spheres reach the arm's start configuration
   std::vector<CapsulePath> capsules;     ///< of persons
-  std::vector<sim::Obstacle> furniture;  ///< boxes and cylinders at rest
+  std::vector<sim::Obstacle> furniture;  ///< boxes, cylinders and spheres at rest
   bool reports_velocities = true;        ///< of obstacles; false: the controller receives zeros
+  bool shuffles_obstacles = false;       ///< each set that the controller receives has another order
   bool goal_has_orientation = false;     ///< furniture: the goal is also the tool's orientation at goal_rad
   /// People: the target is first the tool's position at the goal, then changes moves - 1 times between those at start
   /// and goal, each time after this duration.

@@ -1,5 +1,8 @@
 #include "host/campaign/sensing.h"
 
+#include <numeric>
+#include <utility>
+
 #include "host/campaign/solids.h"
 
 namespace sidestep::campaign {
@@ -36,11 +39,21 @@ const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
 void Sensing::receive(ObstacleMeasurement measurement) {
   measurement.count = newest_.count + 1;
   newest_ = std::move(measurement);
+  if (scene_.shuffles_obstacles) shuffle(newest_);
   if (scene_.reports_velocities) return;
   for (Obstacle& obstacle : newest_.obstacles) {
     obstacle.velocity_mps.setZero();
     obstacle.angular_velocity_radps.setZero();
   }
+}
+
+/// The algorithm of Fisher and Yates; std::shuffle may differ between standard libraries.
+void Sensing::shuffle(ObstacleMeasurement& measurement) {
+  std::vector<size_t>& order = measurement.order;
+  order.resize(measurement.obstacles.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  for (size_t last = order.size(); last-- > 1;)
+    std::swap(order[last], order[static_cast<size_t>(random_.integer(0, static_cast<int>(last)))]);
 }
 
 ObstacleMeasurement Sensing::exact(int64_t now_us, double t_s) const {

@@ -14,12 +14,13 @@ namespace sidestep::campaign {
 struct ObstacleMeasurement {
   int64_t received_us = 0;
   int64_t count = 0;                ///< number of sets received so far, this one included
-  std::vector<Obstacle> obstacles;  ///< base frame; their ids do not count
+  std::vector<Obstacle> obstacles;  ///< base frame; the id of each is its index
+  std::vector<size_t> order;        ///< of the indices in the message; empty: as above
 };
 
 /// Model of the obstacle sensor. Family real: 30 sets a second, 40 ms old, positions with noise, one set in ten is
 /// lost. Families with a camera: people/camera.h. Other families: the exact set in every cycle. Velocities only if the
-/// scene reports them.
+/// scene reports them, and in the same order in all sets unless the scene shuffles them.
 class Sensing {
  public:
   explicit Sensing(const Scene& scene);
@@ -32,6 +33,7 @@ class Sensing {
   ObstacleMeasurement exact(int64_t now_us, double t_s) const;
   void capture(int64_t at_us, double t_s);
   void receive(ObstacleMeasurement measurement);
+  void shuffle(ObstacleMeasurement& measurement);
   void capture_spheres(int64_t at_us, double t_s);
   void capture_people(int64_t at_us, double t_s);
 

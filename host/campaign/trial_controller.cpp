@@ -81,8 +81,9 @@ class StepController : public TrialController {
     obstacles_count_ = measurement.count;
     obstacles_->count = static_cast<int>(measurement.obstacles.size());
     for (size_t i = 0; i < measurement.obstacles.size(); ++i) {
-      obstacles_->obstacles[i] = measurement.obstacles[i];
-      obstacles_->obstacles[i].id = static_cast<int32_t>(i);
+      const size_t index = measurement.order.empty() ? i : measurement.order[i];
+      obstacles_->obstacles[i] = measurement.obstacles[index];
+      obstacles_->obstacles[i].id = static_cast<int32_t>(index);
     }
     if (model_.settings.estimates_motion)
       estimator_->complete(*obstacles_, static_cast<double>(measurement.received_us - obstacles_us_) * 1e-6);

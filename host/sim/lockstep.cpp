@@ -6,8 +6,8 @@ namespace {
 
 constexpr int64_t kFirstUtime_us = 1'000'000;  // not 0, which often means "never"
 constexpr int64_t kRepeat_us = 100'000;        // interval of repetitions until the controller answers
-// Several controllers start together at this time, whatever their order of arrival. It is so much later than the
-// messages before it that these are too old for all controllers.
+// All controllers start together at this time, whenever each of them answered first and whatever their order. It is so
+// much later than the messages before it that these are too old to count: a run does not depend on them.
 constexpr int64_t kCommonStart_us = 1'000'000'000;
 
 struct Reply {
@@ -66,8 +66,7 @@ Outcome run_lockstep(Simulation& simulation, SimWire& wire, double patience_s, c
       continue;
     }
     if (first_answered_us == 0) {
-      if (simulation.runs.size() > 1) utime = kCommonStart_us;
-      first_answered_us = utime;
+      first_answered_us = utime = kCommonStart_us;
     }
     if (simulation.tracked() || simulation.ready()) simulation.record();
     if (simulation.complete()) return Outcome::kDone;

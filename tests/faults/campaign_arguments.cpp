@@ -55,6 +55,8 @@ void bad_arguments_end_with_code_2(void**) {
                                 "--search rest --count 1 --csv /nowhere/at/all.csv",
                                 "--search rest --count 1 --no-velocities",
                                 "--problems nowhere --no-velocities",
+                                "--family moving --decoys 1",
+                                "--search rest --count 1 --decoys 1",
                                 "--scene nowhere.yaml",
                                 "--scene firmware/config/lwa3.yaml",
                                 "--nonsense",

@@ -1,6 +1,8 @@
+#include <chrono>
 #include <csignal>
 #include <map>
 #include <sstream>
+#include <thread>
 
 #include "tests/support/check.h"
 #include "tests/support/lcm_peer.h"
@@ -33,7 +35,8 @@ Columns columns_of(const std::string& csv) {
 }
 
 /// Plays a scenario with both programs and returns the simulator's CSV. met: whether its expectations must be met.
-std::string play(const std::string& scenario, const std::string& law, bool lockstep, bool met = true) {
+/// late_ms: how much later than the simulator the controller starts.
+std::string play(const std::string& scenario, const std::string& law, bool lockstep, bool met = true, int late_ms = 0) {
   const std::string csv = test::scratch_folder() + "/" + scenario + ".csv";
   std::vector<std::string> controller = {
       "build/controller", "--config", "firmware/config/lwa3.yaml", "--law", law, "--lcm-url", private_lcm_url()};
@@ -44,7 +47,9 @@ std::string play(const std::string& scenario, const std::string& law, bool locks
     controller.emplace_back("--lockstep");
     sim.emplace_back("--lockstep");
   }
-  Process the_controller(controller), the_sim(sim);
+  Process the_sim(sim);
+  std::this_thread::sleep_for(std::chrono::milliseconds(late_ms));
+  Process the_controller(controller);
   const int code = the_sim.wait(300.0);  // a build with sanitizers is slow
   check(code == (met ? 0 : 1), "%s, law %s: the simulator's code is %d: %s", scenario.c_str(), law.c_str(), code,
         the_sim.output().c_str());
@@ -84,6 +89,15 @@ void two_lockstep_runs_are_equal(void**) {
   assert_true(one.at("t_s").size() > 200);
 }
 
+/// The simulator repeats its messages until the controller answers: how often must not matter.
+void a_lockstep_run_does_not_depend_on_when_the_controller_starts(void**) {
+  Columns soon = columns_of(play("closing-gap", "sidestep", true)),
+          late = columns_of(play("closing-gap", "sidestep", true, true, 450));
+  soon.erase("cycle_time_s");
+  late.erase("cycle_time_s");
+  assert_true(soon == late);
+}
+
 void a_run_in_real_time_ends_like_one_in_lockstep(void**) {
   const Columns live = columns_of(play("paper-c", "sidestep", false)),
                 lockstep = columns_of(play("paper-c", "sidestep", true));
@@ -107,6 +121,7 @@ int main() {
       cmocka_unit_test_teardown(the_papers_simulations_agree_with_numpy_from_end_to_end, test::kill_processes),
       cmocka_unit_test_teardown(the_sidestep_law_arrives_where_the_papers_law_does_not, test::kill_processes),
       cmocka_unit_test_teardown(two_lockstep_runs_are_equal, test::kill_processes),
+      cmocka_unit_test_teardown(a_lockstep_run_does_not_depend_on_when_the_controller_starts, test::kill_processes),
       cmocka_unit_test_teardown(a_run_in_real_time_ends_like_one_in_lockstep, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

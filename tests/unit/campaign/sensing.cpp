@@ -1,5 +1,8 @@
 #include "host/campaign/sensing.h"
 
+#include <algorithm>
+
+#include "host/campaign/decoys.h"
 #include "host/campaign/scene_maker.h"
 #include "tests/support/check.h"
 
@@ -69,6 +72,22 @@ void obstacles_are_measured_at_rest_while_the_scene_is_frozen(void**) {
                scene.spheres[0].at(0.0).position_m, 0.03);
 }
 
+void decoys_are_harmless_and_come_in_a_new_order_in_every_set(void**) {
+  Scene scene = make_scene(family_named("dodge@1"), 3);
+  add_decoys(scene, 40);
+  const ArmPose pose = scene.arm->pose(scene.start_rad);
+  for (const sidestep::sim::Obstacle& decoy : scene.furniture) {
+    const double clearance_m = scene.arm->clearance(pose, decoy.motion.position_m, decoy.solid.size_m.x());
+    check(clearance_m >= 0.25 && clearance_m <= 0.5, "%g m", clearance_m);
+  }
+  Sensing sensing(scene);
+  const std::vector<size_t> first = sensing.newest_at(1'000'000, 0.0).order;
+  const ObstacleMeasurement& second = sensing.newest_at(1'000'000 + kPeriod_us, kPeriod_s);
+  check(second.obstacles.size() == 41 && second.order != first, "%zu obstacles", second.obstacles.size());
+  check(std::is_permutation(first.begin(), first.end(), second.order.begin()), "not the same obstacles");
+  check_near(second.obstacles[0].velocity_mps.norm(), 1.0, 1e-12);
+}
+
 }  // namespace
 
 int main() {
@@ -76,6 +95,7 @@ int main() {
       cmocka_unit_test(exact_sensing_reports_the_truth_in_every_cycle),
       cmocka_unit_test(real_sensing_is_late_noisy_and_incomplete),
       cmocka_unit_test(obstacles_are_measured_at_rest_while_the_scene_is_frozen),
+      cmocka_unit_test(decoys_are_harmless_and_come_in_a_new_order_in_every_set),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
