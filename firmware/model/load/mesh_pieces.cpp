@@ -6,19 +6,18 @@
 #include <optional>
 
 #include "firmware/model/gjk.h"
-#include "firmware/model/load/mesh_distance.h"
+#include "firmware/model/load/mesh_excess.h"
 
 namespace sidestep {
 namespace {
 
-// Where pieces meet, the largest excess is up to 1.2 mm more than that of the samples.
-constexpr double kEnoughP95_m = 0.0045, kEnough_m = 0.0095;
+// The largest excess is up to 0.5 mm more than that of the samples.
+constexpr double kEnoughP95_m = 0.0045, kEnough_m = 0.01;
 constexpr int kCells = 32;          // of the grid, along each axis
 constexpr int kThinning = 48;       // points of one cell of so many along the longest edge count once in a candidate
 constexpr int kCutsPerPiece = 3;    // so many more parts than pieces, which are then merged
 constexpr double kRadius_m = 5e-4;  // vertices are added until the rounding radius is below this
 constexpr double kMargin_m = 1e-9;  // added to radii; more than the rounding error
-constexpr int kSamples = 6000;      // of the surface
 
 using Triangle = std::array<Vector3, 3>;
 
@@ -249,68 +248,6 @@ Part part_of(std::vector<Triangle> triangles, ConvexHull hull) {
 Part part_of(std::vector<Triangle> triangles) {
   ConvexHull hull = convex_hull(corners_of(triangles));
   return part_of(std::move(triangles), std::move(hull));
-}
-
-/// A point of the surface of all pieces, with the area that it stands for.
-struct Sample {
-  double excess_m, area_m2;
-  size_t piece;
-};
-
-/// Samples of one piece's faces, moved outward by the rounding radius, that lie in no other piece. The corners stand
-/// for no area.
-void sample_surface(const std::vector<ConvexHull>& hulls, const std::vector<double>& radii_m, size_t piece,
-                    double per_sample_m2, const MeshDistance& mesh, std::vector<Sample>& samples) {
-  const auto is_inside_another = [&](const Vector3& p) {
-    for (size_t other = 0; other < hulls.size(); ++other)
-      if (other != piece && hulls[other].outside_m(p) < radii_m[other]) return true;
-    return false;
-  };
-  for (const ConvexHull::Face& face : hulls[piece].faces) {
-    const Vector3& a = hulls[piece].vertices[static_cast<size_t>(face.corners[0])];
-    const Vector3 ab = hulls[piece].vertices[static_cast<size_t>(face.corners[1])] - a;
-    const Vector3 ac = hulls[piece].vertices[static_cast<size_t>(face.corners[2])] - a;
-    const double area_m2 = 0.5 * ab.cross(ac).norm();
-    const auto add = [&](const Vector3& on_face, double share_m2) {
-      const Vector3 p = on_face + radii_m[piece] * face.normal;
-      if (!is_inside_another(p)) samples.push_back({mesh.to_m(p), share_m2, piece});
-    };
-    for (const Vector3& corner : {a, Vector3(a + ab), Vector3(a + ac)}) add(corner, 0.0);
-    const int rows = std::max(1, static_cast<int>(std::lround(std::sqrt(area_m2 / per_sample_m2))));
-    // The centres of rows^2 congruent triangles.
-    for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < 2 * (rows - i) - 1; ++j) {
-        const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-        const int column = j / 2;
-        const double u = (i + third) / rows, v = (column + third) / rows;
-        add(a + u * ab + v * ac, area_m2 / (rows * rows));
-      }
-  }
-}
-
-/// Returns the piece with the largest excess.
-size_t measure_excess(const std::vector<ConvexHull>& hulls, const MeshDistance& mesh, MeshPieces& result) {
-  std::vector<double> radii_m;
-  for (const MeshPiece& piece : result.pieces) radii_m.push_back(piece.radius_m);
-  double area_m2 = 0.0;
-  for (const ConvexHull& hull : hulls)
-    for (const ConvexHull::Face& face : hull.faces) {
-      const auto& [a, b, c] = face.corners;
-      const auto corner = [&](int i) { return hull.vertices[static_cast<size_t>(i)]; };
-      area_m2 += 0.5 * (corner(b) - corner(a)).cross(corner(c) - corner(a)).norm();
-    }
-  std::vector<Sample> samples;
-  for (size_t piece = 0; piece < hulls.size(); ++piece)
-    sample_surface(hulls, radii_m, piece, area_m2 / kSamples, mesh, samples);
-  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.excess_m < b.excess_m; });
-  double outer_m2 = 0.0, below_m2 = 0.0;
-  for (const Sample& sample : samples) outer_m2 += sample.area_m2;
-  for (const Sample& sample : samples) {
-    result.excess_m = sample.excess_m;
-    below_m2 += sample.area_m2;
-    if (below_m2 <= 0.95 * outer_m2) result.excess_p95_m = sample.excess_m;
-  }
-  return samples.empty() ? 0 : samples.back().piece;
 }
 
 bool is_enough(const MeshPieces& pieces) {

@@ -4,6 +4,7 @@
 
 #include "firmware/model/gjk.h"
 #include "firmware/model/load/capsule_fit.h"
+#include "firmware/model/load/mesh_distance.h"
 #include "firmware/model/load/pieces_cache.h"
 #include "host/sim/solid.h"
 #include "tests/support/check.h"
@@ -68,6 +69,40 @@ void every_point_of_every_triangle_is_enclosed(void**) {
             check(outside_m(split, p) <= 1e-9, "trial %d: %g m outside", trial, outside_m(split, p));
           }
     }
+  }
+}
+
+/// The points of the pieces' surfaces that lie in no other piece, by hulls of their own, at random and dense.
+double largest_excess_m(const MeshPieces& split, const Mesh& mesh, Random& random) {
+  const MeshDistance distance(mesh);
+  std::vector<ConvexHull> hulls;
+  for (const MeshPiece& piece : split.pieces) hulls.push_back(convex_hull(piece.polyhedron->vertices));
+  double largest_m = 0.0;
+  for (size_t i = 0; i < hulls.size(); ++i)
+    for (const ConvexHull::Face& face : hulls[i].faces) {
+      const auto corner = [&](size_t k) { return hulls[i].vertices[static_cast<size_t>(face.corners[k])]; };
+      const double area_m2 = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+      for (int sample = 0; sample < area_m2 / 2e-6; ++sample) {
+        double u = random.uniform(0.0, 1.0), v = random.uniform(0.0, 1.0);
+        if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+        const Vector3 p = corner(0) + u * (corner(1) - corner(0)) + v * (corner(2) - corner(0)) +
+                          split.pieces[i].radius_m * face.normal;
+        bool is_inside = false;
+        for (size_t other = 0; other < hulls.size(); ++other)
+          is_inside |= other != i && hulls[other].outside_m(p) < split.pieces[other].radius_m;
+        if (!is_inside) largest_m = std::max(largest_m, distance.to_m(p));
+      }
+    }
+  return largest_m;
+}
+
+void the_largest_excess_is_that_of_any_point_of_the_surface(void**) {
+  Random random(6);
+  for (int trial = 0; trial < 6; ++trial) {
+    const Mesh mesh = random_mesh(random, {0.3, 0.2, 0.2}, 6);
+    const MeshPieces split = split_mesh(mesh, 4);
+    const double found_m = largest_excess_m(split, mesh, random);
+    check(split.excess_m > found_m - 5e-4, "trial %d: %g m, but %g m somewhere", trial, split.excess_m, found_m);
   }
 }
 
@@ -225,6 +260,7 @@ void the_simulator_measures_distances_to_the_mesh_itself(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_point_of_every_triangle_is_enclosed),
+      cmocka_unit_test(the_largest_excess_is_that_of_any_point_of_the_surface),
       cmocka_unit_test(a_fine_ball_is_enclosed_by_few_vertices_and_a_small_radius),
       cmocka_unit_test(points_on_a_capsule_give_that_capsule),
       cmocka_unit_test(a_bent_mesh_is_cut_where_it_bends),
