@@ -18,10 +18,12 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uint64_t kVersion = 5;  // raise it whenever the result changes
+constexpr std::uint64_t kVersion = 6;  // raise it whenever the result changes
 constexpr int kSamples = 5000;
 constexpr double kTouchingShare = 0.5;  // of the samples; two links that touch in more overlap by construction
 constexpr double kForbiddenShare = 0.015;
+// Pieces of meshes also touch in about 1 % of the samples in which the meshes do not.
+constexpr double kForbiddenShareOfPieces = 0.012;
 constexpr double kLeastClearance_m = 0.001;
 
 bool neighbours(const Arm& arm, int a, int b) {
@@ -161,12 +163,15 @@ SelfPairs compute(const Arm& arm, double clearance_m, const std::vector<LinkPair
     if (overlaps(pair)) result.overlaps.emplace_back(pair.first, pair.second);
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), overlaps), pairs.end());
 
+  const bool has_pieces =
+      std::any_of(arm.shapes.begin(), arm.shapes.end(), [](const LinkShape& s) { return s.polyhedron != nullptr; });
+  const double most_share = has_pieces ? kForbiddenShareOfPieces : kForbiddenShare;
   const FreeSamples free(pairs, clearance_m);
   double low = 0.0, high = 1.0;
-  if (free.forbidden_share(free.clearances_m(high)) <= kForbiddenShare) low = high;
+  if (free.forbidden_share(free.clearances_m(high)) <= most_share) low = high;
   for (int i = 0; i < 20 && low < high; ++i) {
     const double middle = 0.5 * (low + high);
-    (free.forbidden_share(free.clearances_m(middle)) <= kForbiddenShare ? low : high) = middle;
+    (free.forbidden_share(free.clearances_m(middle)) <= most_share ? low : high) = middle;
   }
   const std::vector<double> clearances = free.clearances_m(low);
   result.forbidden_share = free.forbidden_share(clearances);

@@ -4,6 +4,7 @@
 
 #include "firmware/control/shield/shield.h"
 #include "firmware/model/gjk.h"
+#include "firmware/model/load/convex_hull.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
@@ -91,6 +92,24 @@ void few_free_configurations_are_forbidden_also_where_links_are_near_by_construc
   }
 }
 
+/// The pieces alone forbid what they exceed their mesh.
+void clearances_forbid_less_where_pieces_stand_for_meshes(void**) {
+  Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
+  const SelfPairs exact = find_self_pairs(arm, 0.02);
+  const auto box = std::find_if(arm.shapes.begin(), arm.shapes.end(),
+                                [](const LinkShape& s) { return !s.is_capsule && s.solid.kind == CoreKind::kBox; });
+  assert_true(box != arm.shapes.end());
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).cwiseProduct(box->solid.half_m));
+  box->polyhedron = std::make_shared<Polyhedron>(polyhedron_of(convex_hull(corners)));
+  box->solid.polyhedron = box->polyhedron.get();
+  box->solid.kind = CoreKind::kPolyhedron;
+  const SelfPairs pieces = find_self_pairs(arm, 0.02);
+  check(exact.forbidden_share > 0.012 && exact.forbidden_share <= 0.015, "%g", exact.forbidden_share);
+  check(pieces.forbidden_share > 0.005 && pieces.forbidden_share <= 0.012, "%g", pieces.forbidden_share);
+}
+
 void the_pair_that_forbids_most_is_named(void**) {
   const SelfPairs pairs = find_self_pairs(load_arm("tests/data/arm8.urdf", "mount", "flange"), 0.2);
   assert_true(pairs.forbidden_share > 0.0 && pairs.worst_share > 0.0 && pairs.worst_share <= pairs.forbidden_share);
@@ -175,6 +194,7 @@ int main() {
       cmocka_unit_test(the_pairs_are_the_same_on_every_call),
       cmocka_unit_test(few_free_configurations_are_forbidden_also_where_links_are_near_by_construction),
       cmocka_unit_test(the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one),
+      cmocka_unit_test(clearances_forbid_less_where_pieces_stand_for_meshes),
       cmocka_unit_test(the_pair_that_forbids_most_is_named),
       cmocka_unit_test(ignored_links_form_no_pair),
       cmocka_unit_test(an_srdf_disables_collisions),
