@@ -21,6 +21,7 @@ BUILD = ROOT / "build"
 FIGURES = BUILD / "figures"
 RECORDS = BUILD / "runs"
 LAWS = {"paper": "the paper's law", "sidestep": "Sidestep"}
+TASK_LETTERS = 150
 HELD, BROKEN = 0, 1  # exit codes of a completed simulation: its expectations were met, or not
 
 stopping = threading.Event()
@@ -99,11 +100,23 @@ def load_scenario(file):
         check(file, scenario, duration_s=(int, float))
     if "arms" in scenario:
         check(file, scenario, arms=list)
+    scenario["task"] = task_of(Path(file).read_text())
     if "people" in scenario:
         scenario["obstacles"] = obstacles_of(file, scenario)
     for arm in scenario.get("arms", [scenario]):
         check(file, arm, config=str, robot=dict, **({"name": str} if "arms" in scenario else {}))
     return scenario
+
+
+def task_of(text):
+    """What a scenario is about: the whole sentences of its first comment that fit into a line of a figure."""
+    comment = re.match(r"(#[^\n]*\n)*", text)[0].replace("\n#", "").lstrip("# ")
+    task = ""
+    for sentence in re.findall(r".+?\.(?=\s|$)", comment.strip()):
+        if len(task + sentence) > TASK_LETTERS:
+            break
+        task += sentence
+    return task
 
 
 def obstacles_of(file, scenario):
