@@ -7,14 +7,16 @@ from matplotlib.patches import Patch
 
 import outcome
 import solids
+import words
+from labels import Labels
 from solids import OBLIQUE, in_world
-from style import BLACK, CONTACT, LAW_COLOURS, MOVING, OTHER_ARM, RESTING, TARGET, plt
+from style import BLACK, CONTACT, HELD, LAW_COLOURS, MOVING, OTHER_ARM, RESTING, TARGET, plt
 
 SQUARE_M, FLOOR_M = 0.25, 2.5  # edge of a square of the floor, half the edge of the floor
-NEAR_M = 1.0      # an obstacle within this clearance is in the picture
 LARGE_M = 2.0     # what is larger may extend beyond the picture
+SMALL_M = 0.2     # what is smaller has its name beside it
 ARROW_M = 0.16
-AT_REST = "at rest"
+KINDS = {"moving obstacle": MOVING, "held by the tool": HELD, "at rest": RESTING}  # of obstacles: name -> colour
 HALO = [matplotlib.patheffects.withStroke(linewidth=3.4, foreground="white")]
 
 
@@ -24,10 +26,14 @@ def mixed(colour, share):
 
 
 class Painter:
-    """Draws solids and paths in a view; finish() paints them from far to near. legend: label -> handle."""
+    """Draws solids and paths in a view; finish() paints them from far to near. legend: label -> handle.
 
-    def __init__(self, axes, view):
-        self.axes, self.view, self.patches, self.extent, self.legend = axes, view, [], [], {}
+    every_name: all obstacles have their numbers, else only those of which the words above the picture speak.
+    """
+
+    def __init__(self, axes, view, every_name=False):
+        self.axes, self.view, self.every_name = axes, view, every_name
+        self.patches, self.extent, self.legend, self.labels = [], [], {}, Labels()
 
     def solid(self, one, colour, alpha, fits=True, behind=False):
         """behind: below all other solids, whatever its depth."""
@@ -92,9 +98,9 @@ def draw_arm(painter, run, row, colour, alpha, label):
 
 
 def draw_start_and_end(painter, run):
-    """The arm at the start as an outline, and at the end as a pale shape."""
+    """The arm at the start, hardly tinted, and at the end as a pale shape."""
     colour = LAW_COLOURS[run.law]
-    for depth, row, share, label in ((-300, 0, 0.0, "arm at the start"), (-200, -1, 0.3, "arm at the end")):
+    for depth, row, share, label in ((-300, 0, 0.08, "arm at the start"), (-200, -1, 0.3, "arm at the end")):
         fill = mixed(colour, share)
         painter.silhouette(solids.arm_solids(run, row), mixed(colour, 0.7), fill, depth)
         painter.legend[label] = Patch(facecolor=fill, edgecolor=mixed(colour, 0.7), linewidth=1.5)
@@ -103,48 +109,59 @@ def draw_start_and_end(painter, run):
 def draw_surroundings(painter, run):
     for one in solids.surroundings(run):
         painter.solid(one, RESTING, 0.35, fits=max(one.size) < LARGE_M, behind=True)
-        painter.legend[AT_REST] = Patch(facecolor=RESTING, edgecolor="0.4")
+        painter.legend["surroundings, in the configuration"] = Patch(facecolor=(*matplotlib.colors.to_rgb("0.72"), 0.35),
+                                                                     edgecolor="0.4")
 
 
-def moves(run, number):
-    """Whether an obstacle moves at any time."""
-    return bool((np.ptp(run.path(f"o{number + 1}"), axis=0) > 0.005).any())
+def kind_of(run, number, row):
+    """The key in KINDS of an obstacle at a row."""
+    if number in outcome.held(run, row):
+        return "held by the tool"
+    return "moving obstacle" if outcome.moves(run, number) else "at rest"
 
 
 def draw_obstacles(painter, run, row):
-    """The obstacles near the arm at a row with their numbers, and the tracks of those that move."""
-    there = solids.obstacle_solids(run, row)
+    """The obstacles near the arm at a row with their names, and the tracks of those that move."""
+    there, text = solids.obstacle_solids(run, row), words.approach(run)
     for parts in outcome.bodies(run):
         first = parts[0]
         centres = in_world(run.scenario, run.path(f"o{first + 1}"))
-        if moves(run, first):
+        if outcome.moves(run, first):
             painter.line(centres, fits=False, color=MOVING, linestyle=(0, (1, 1)), linewidth=2, zorder=1,
                          label="track of an obstacle")
-        away_m = [run.columns[f"o{i + 1}_clearance_m"][row] for i in parts]
-        if min(away_m) > NEAR_M:
+        kind = kind_of(run, first, row)
+        if min(run.columns[f"o{i + 1}_clearance_m"][row] for i in parts) > outcome.NEAR_M and "held" not in kind:
             continue
-        for i, part_away_m in zip(parts, away_m):
-            draw_obstacle(painter, there[i], moves(run, first), part_away_m < NEAR_M)
-        if moves(run, first):
+        above_floor = all(solids.surface(there[i])[:, 2].min() > 0 for i in parts)
+        for i in parts:
+            draw_obstacle(painter, there[i], kind, above_floor)
+        if kind == "moving obstacle":
             draw_direction(painter, there[first], centres[max(row - 5, 0)], centres[min(row + 5, len(centres) - 1)])
-        name = outcome.obstacle_name(run, first).removeprefix("obstacle ")
-        painter.axes.text(*painter.view.flat(there[first].position), name, fontweight="bold", ha="center", va="center",
-                          zorder=7, path_effects=HALO, clip_on=True)
+        name = outcome.obstacle_name(run, first)
+        if painter.every_name or kind != "at rest" or name in text:
+            draw_name(painter, there[first], name)
 
 
-def draw_obstacle(painter, one, moving, near):
-    """near: the picture is made large enough for it, unless it is large itself."""
-    small = max(one.size) < LARGE_M
-    if painter.view is OBLIQUE and small:
-        draw_shadow(painter, one, near)
-    painter.solid(one, MOVING if moving else RESTING, 0.75 if moving else 0.6, fits=small and near)
-    painter.legend["moving obstacle" if moving else AT_REST] = Patch(facecolor=MOVING if moving else RESTING,
-                                                                     edgecolor="0.3" if moving else "0.4")
+def draw_name(painter, one, name):
+    """On a large obstacle, beside a small one, which it would hide."""
+    if painter.every_name:
+        name = name.removeprefix("obstacle ")
+    painter.labels.add(painter.view.flat(one.position), name, 0 if max(one.size) > SMALL_M else 16, fontweight="bold",
+                       path_effects=HALO, arrowprops=dict(arrowstyle="-", color="0.4", linewidth=0.7))
 
 
-def draw_shadow(painter, one, fits):
-    """What is straight below a solid on the floor, which shows where it is."""
-    painter.patch(-1000, solids.surface(one) * [1, 1, 0], fits, facecolor="0.9", edgecolor="none")
+def draw_obstacle(painter, one, kind, above_floor):
+    """The picture is made large enough for it, unless it is large itself."""
+    small, colour = max(one.size) < LARGE_M, KINDS[kind]
+    if painter.view is OBLIQUE and small and above_floor:
+        draw_shadow(painter, one)
+    painter.solid(one, colour, 0.6 if kind == "at rest" else 0.75, fits=small)
+    painter.legend[kind] = Patch(facecolor=colour, edgecolor="0.3")
+
+
+def draw_shadow(painter, one):
+    """What is straight below a solid on the floor, which shows where it is. What reaches below the floor has none."""
+    painter.patch(-1000, solids.surface(one) * [1, 1, 0], True, facecolor="0.9", edgecolor="none")
     painter.legend["below an obstacle, on the floor"] = Patch(facecolor="0.9", edgecolor="none")
 
 
@@ -154,33 +171,44 @@ def draw_direction(painter, one, before, after):
     if np.linalg.norm(end - start) > 1e-3:
         middle = painter.view.flat(one.position)
         along = (end - start) / np.linalg.norm(end - start)
+        for share in np.linspace(0.4, 1.4, 5):
+            painter.labels.keep_free(middle + along * ARROW_M * share, 3)
         painter.axes.annotate("", middle + along * ARROW_M * 1.4, middle + along * ARROW_M * 0.4, zorder=6.5,
                               annotation_clip=True, arrowprops=dict(arrowstyle="-|>", color="0.15", linewidth=1.6))
+        painter.legend["direction of motion (not to scale)"] = Line2D([], [], color="0.15", linewidth=1.6, marker=">",
+                                                                      markersize=6, markevery=[1])
 
 
 def mark_contact(painter, pair):
     """A red ring around the place where the arm touches something."""
-    painter.axes.plot(*painter.view.flat(pair[0]), marker="o", markersize=18, color="none", markeredgecolor=CONTACT,
-                      markeredgewidth=2.5, zorder=9)
+    ring = dict(marker="o", color="none", markeredgecolor=CONTACT, markeredgewidth=2.5)
+    painter.axes.plot(*painter.view.flat(pair[0]), markersize=18, zorder=9, **ring)
+    painter.labels.keep_free(painter.view.flat(pair[0]), 11)
+    painter.legend["place of contact"] = Line2D([], [], markersize=10, **ring)
+
+
+def mark_distance(painter, ends):
+    line = dict(color=BLACK, linewidth=2, marker=".", markersize=5)
+    painter.axes.plot(*zip(*ends), zorder=8, **line)
+    painter.legend["shortest distance"] = Line2D([], [], **line)
+    for share in np.linspace(0, 1, 5):
+        painter.labels.keep_free(ends[0] + share * (ends[1] - ends[0]), 4)
 
 
 def mark_closest(painter, moment):
-    """The place that the title names, with its distance in words."""
+    """The place of the moment that is drawn, in words."""
     if not moment or not moment.pair:
         return
-    on_arm, on_other = painter.view.flat(moment.pair)
+    ends = painter.view.flat(moment.pair)
+    text = f"{moment.clearance_m * 1000:.1f} mm"
     if moment.contact:
         mark_contact(painter, moment.pair)
+        text = "links touch" if moment.name == outcome.LINKS else "first contact"
     else:
-        painter.axes.plot(*zip(on_arm, on_other), color=BLACK, linewidth=2, marker=".", markersize=5, zorder=8)
-    low, high = painter.corners()
-    place = (on_arm + on_other) / 2
-    away = np.where(place > (low + high) / 2, -1, 1)  # toward the middle of the picture, which contains the text
-    painter.axes.annotate("first contact" if moment.contact else f"{moment.clearance_m * 1000:.1f} mm", place,
-                          away * [46, 34], textcoords="offset points", ha="center", va="center", zorder=10,
-                          color=CONTACT if moment.contact else BLACK, fontweight="bold",
-                          bbox=dict(boxstyle="round,pad=0.2", facecolor="white", edgecolor="0.6", alpha=0.9),
-                          arrowprops=dict(arrowstyle="-", color=BLACK, linewidth=1))
+        mark_distance(painter, ends)
+    painter.labels.add(ends.mean(axis=0), text, 38, color=CONTACT if moment.contact else BLACK, fontweight="bold",
+                       bbox=dict(boxstyle="round,pad=0.2", facecolor="white", edgecolor="0.6", alpha=0.9),
+                       arrowprops=dict(arrowstyle="-", color=BLACK, linewidth=1))
 
 
 def draw_scene(painter, run, moment):
@@ -188,7 +216,7 @@ def draw_scene(painter, run, moment):
     colour, row = LAW_COLOURS[run.law], outcome.drawn_row(run)
     if painter.view is OBLIQUE:
         draw_floor(painter, run)
-        painter.axes.text(0.0, 0.0, f"floor squares: {SQUARE_M:g} m", transform=painter.axes.transAxes, color="0.35",
+        painter.axes.text(0.0, 0.0, f"grid at the height of the base: {SQUARE_M:g} m", transform=painter.axes.transAxes, color="0.35",
                           fontsize=9)
         painter.axes.set_axis_off()
     draw_surroundings(painter, run)
@@ -196,6 +224,7 @@ def draw_scene(painter, run, moment):
     draw_arm(painter, run, row, colour, 1.0, "arm at the time drawn")
     for other in run.others:
         draw_arm(painter, other, row, OTHER_ARM, 0.75, "the other arm")
+    mark_closest(painter, moment)
     if outcome.obstacle_count(run):
         draw_obstacles(painter, run, row)
     target = in_world(run.scenario, run.path("target"))
@@ -205,7 +234,7 @@ def draw_scene(painter, run, moment):
                  label="path of the tool", path_effects=HALO)
     painter.line(target[-1:], color=TARGET, marker="*", markersize=13, markeredgecolor="white", linestyle="none",
                  zorder=9, label="target at the end")
-    mark_closest(painter, moment)
+    painter.labels.keep_free(painter.view.flat(target[-1]), 8)
     painter.finish()
 
 

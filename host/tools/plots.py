@@ -6,16 +6,18 @@ from matplotlib.lines import Line2D
 import drawing
 import outcome
 import solids
-from outcome import closest, clearance, length
+import words
+from outcome import closest, clearance
 from runs import FIGURES, LAWS, config_of, load
 from solids import FROM_ABOVE, OBLIQUE
 from style import BLACK, CONTACT, GREEN, GREY, JOINTS, LAW_LINES, MOVING, OTHER_ARM, TARGET, finish, plt, save
+from words import length
 
 NUMBERS = "Numbers"      # key of the metadata of a picture
 FAR_M = 0.3              # upper end of the plots of clearance
 HARD_CLEARANCE_M, REST_CLEARANCE_M = 0.02, 0.004  # of a configuration without the keys in shield:
-HEADROOM = 1.2           # above the largest value, for the names of bands
-SHORTEST, NARROW = 0.03, 0.4  # of a band, shares of the time axis: too short for a name, upright name
+HEADROOM = 1.15          # above the largest value, for the names of events
+LEAST_DISTANCE_M = 1e-3  # lower end of the plots of the distance to the target
 JUMP_M = 0.05            # in one period of a target
 
 
@@ -25,7 +27,9 @@ def section(run, name):
 
 # Curves over time
 
-FORESIGHT = {1: ("Sidestep guided by foresight", 0.07), 2: ("Sidestep knows no path", 0.2)}
+# Value of the column -> (name, look)
+FORESIGHT = {1: ("Sidestep follows a path that foresight has planned", dict(facecolor="0.92", edgecolor="none")),
+             2: ("Sidestep waits: foresight knows no path yet", dict(facecolor="0.92", edgecolor="0.6", hatch="///"))}
 
 
 def stretches(wanted):
@@ -34,30 +38,12 @@ def stretches(wanted):
     return list(zip(edges[::2], edges[1::2]))
 
 
-def mark_foresight(axes, run, shortest=0.0):
-    """Light grey: foresight guides the arm. Darker grey: foresight has no path yet (WAITING).
-
-    shortest: share of the time axis; a shorter band is left out. Returns name -> stretches().
-    """
-    t, found = run.columns["t_s"], {}
-    for value, (name, alpha) in FORESIGHT.items():
-        found[name] = [(first, end) for first, end in stretches(run.columns["foresight"] == value)
-                       if end - first >= shortest * len(t)]
-        for first, end in found[name]:
-            axes.axvspan(t[first], t[min(end, len(t) - 1)], color=BLACK, alpha=alpha, linewidth=0)
-    return found
-
-
-def name_foresight(axes, run, found):
-    """The longest band of each kind has its name in it."""
+def mark_foresight(axes, run):
     t = run.columns["t_s"]
-    for name, bands in found.items():
-        first, end = max(bands, key=lambda rows: rows[1] - rows[0], default=(0, 0))
-        share = (end - first) / len(t)
-        if share > NARROW:
-            write(axes, t[first] + 0.01 * t[-1], name, ha="left")
-        elif share > 0:
-            write(axes, (t[first] + t[end - 1]) / 2, name, ha="center", rotation=90)
+    for value, (name, look) in FORESIGHT.items():
+        for i, (first, end) in enumerate(stretches(run.columns["foresight"] == value)):
+            axes.axvspan(t[first], t[min(end, len(t) - 1)], linewidth=0, zorder=0.5, **look,
+                         label=None if i else name)
 
 
 def write(axes, t_s, name, **style):
@@ -77,40 +63,58 @@ def events(run):
     return found + [(run.columns["t_s"][row + 1], "target jumps") for row in np.flatnonzero(jumps)]
 
 
-def mark_events(axes, run):
-    for t_s, name in events(run):
-        axes.axvline(t_s, color="0.3", linewidth=1, linestyle=":")
-        write(axes, t_s, name, ha="center", rotation=90)
+def mark_events(axes, run, label=None):
+    """label: of the lines, in the legend."""
+    for i, (t_s, name) in enumerate(events(run)):
+        axes.axvline(t_s, color="0.3", linewidth=1, linestyle=":", label=None if i else label)
+        write(axes, t_s, name, ha="center")
+
+
+def mark_changes(axes, run):
+    """Where the clearance jumps: what the tool may touch, as a can and what it stands on, does not count."""
+    mark_events(axes, run, "what the tool may touch changes, and so what counts" if outcome.grasped(run) else None)
 
 
 def plot_target_distance(axes, runs):
+    """On a logarithmic scale, on which the distance of arrival can be seen."""
+    highest_m = max(run.columns["target_distance_m"].max() for run in runs)
+    axes.axhspan(LEAST_DISTANCE_M / 2, outcome.ARRIVED_M, color=TARGET, alpha=0.12, linewidth=0)
     for run in runs:
         distance_m = run.columns["target_distance_m"]
-        axes.plot(run.columns["t_s"], distance_m, **LAW_LINES[run.law],
+        axes.plot(run.columns["t_s"], np.maximum(distance_m, LEAST_DISTANCE_M), **LAW_LINES[run.law],
                   label=f"{LAWS[run.law]}: {length(distance_m[-1])} at the end")
-    finish(axes, f"Tool to target (arrived: below {outcome.ARRIVED_M * 1000:g} mm)", 1, xlabel="time, s",
-           ylabel="distance, m", xlim=(0, None))
-    axes.set_ylim(0, HEADROOM * max(run.columns["target_distance_m"].max() for run in runs))
-    for run in runs:
-        name_foresight(axes, run, mark_foresight(axes, run, SHORTEST))
+        mark_foresight(axes, run)
     mark_events(axes, runs[0])
+    axes.set_yscale("log")
+    axes.set_yticks([0.001, 0.01, 0.1, 1], ["up to\n1 mm", "10 mm", "100 mm", "1 m"])
+    finish(axes, f"Tool to target (green: arrived, below {outcome.ARRIVED_M * 1000:g} mm)", 1, xlabel="time, s",
+           xlim=(0, None), ylim=(0.7 * LEAST_DISTANCE_M, 2.5 * highest_m))
+
+
+def mark_limits(axes, run, resting):
+    """The clearances that the shield keeps: to what moves, and, if there is something at rest, a band down to that."""
+    hard_m, rest_m = (section(run, "shield").get(key, default_m) for key, default_m in (
+        ("hard_clearance_m", HARD_CLEARANCE_M), ("rest_clearance_m", REST_CLEARANCE_M)))
+    axes.axhline(hard_m, color=BLACK, linewidth=1, linestyle=(0, (5, 3)),
+                 label=f"Sidestep keeps {hard_m * 1000:g} mm to what moves\n"
+                       f"(at {outcome.SLOW_MPS:g} m/s or faster) or is uncertain")
+    if resting and rest_m < hard_m:
+        axes.axhspan(rest_m, hard_m, color=BLACK, alpha=0.18, linewidth=0,
+                     label=f"allowed only to what is slower; at rest, down to {rest_m * 1000:g} mm")
 
 
 def finish_clearance(axes, run, lowest_m, title, legend_columns, resting=True):
-    """Lines at contact and at the clearances that the shield keeps; what is below contact is shaded.
+    """Contact, below which it is shaded, and the clearances that the shield keeps.
 
     resting: whether the arm may pass something at the smaller of these clearances.
     """
     highest_m = axes.get_ylim()[1]
-    low, high = min(-0.03, 1.15 * lowest_m), min(FAR_M, max(highest_m, 0.1))
+    low, high = min(-0.03, 1.15 * lowest_m), min(FAR_M, max(HEADROOM * highest_m, 0.1))
     axes.axhspan(low, 0, color=CONTACT, alpha=0.12, linewidth=0)
-    axes.axhline(0, color=CONTACT, linewidth=1.2, label="contact (below: overlap)")
-    limits = [("hard_clearance_m", HARD_CLEARANCE_M, (0, (5, 3)), "moving or uncertain")]
-    limits += [("rest_clearance_m", REST_CLEARANCE_M, (0, (1, 1.5)), "at rest; slow: in between")] if resting else []
-    for key, default_m, style, what in limits:
-        limit_m = section(run, "shield").get(key, default_m)
-        axes.axhline(limit_m, color=BLACK, linewidth=1, linestyle=style,
-                     label=f"Sidestep's limit: {limit_m * 1000:g} mm ({what})")
+    axes.axhline(0, color=CONTACT, linewidth=1.2)
+    axes.text(0.995, low / 2, "contact: overlap", transform=axes.get_yaxis_transform(), ha="right", va="center",
+              fontsize=8.5, color=CONTACT)
+    mark_limits(axes, run, resting)
     axes.yaxis.set_major_formatter(lambda value, _position: f"{value * 1000:g}")
     finish(axes, title, legend_columns, xlabel="time, s",
            ylabel=f"clearance, mm{f' (cut at {FAR_M * 1000:g})' if highest_m > FAR_M else ''}", ylim=(low, high),
@@ -119,13 +123,15 @@ def finish_clearance(axes, run, lowest_m, title, legend_columns, resting=True):
 
 def curves_of_clearance(run):
     """(label, text at the curve, colour, m at every row) of each obstacle or person, the surroundings, the other arm."""
-    columns, curves = run.columns, []
+    columns, curves, least_m = run.columns, [], run.columns["clearance_m"]
     for parts in outcome.bodies(run):
-        label, colour = ("moving obstacle", MOVING) if drawing.moves(run, parts[0]) else ("obstacle at rest", GREY)
+        label, colour = ("moving obstacle", MOVING) if outcome.moves(run, parts[0]) else ("obstacle at rest", GREY)
         name = outcome.obstacle_name(run, parts[0]).removeprefix("obstacle ")
-        curves.append((label, name, colour, np.min([columns[f"o{i + 1}_clearance_m"] for i in parts], axis=0)))
+        values_m = np.min([columns[f"o{i + 1}_clearance_m"] for i in parts], axis=0)
+        if parts[0] in outcome.grasped(run):  # touching it is allowed, so that only the rows that count are drawn
+            label, colour, values_m = "what it grasps, where it counts", BLACK, np.where(values_m == least_m, values_m, np.nan)
+        curves.append((label, name, colour, values_m))
     if solids.surroundings(run):
-        least_m = columns["clearance_m"]
         nearer = np.all([least_m < values_m for *_, values_m in curves], axis=0)
         curves.append(("surroundings, where nearest", "", BLACK, np.where(nearer, least_m, np.nan)))
     if run.others:
@@ -144,16 +150,29 @@ def plot_clearances(axes, run):
             axes.annotate(text, (t[row], values_m[row]), (0, 6), textcoords="offset points", fontweight="bold",
                           ha="center", zorder=6, path_effects=drawing.HALO)
     mark_moment(axes, run, moment)
-    mark_events(axes, run)
-    finish_clearance(axes, run, float(clearance(run).min()), "Clearance between surfaces", 2,
-                     outcome.has_resting(run))
+    mark_touching_links(axes, run)
+    mark_changes(axes, run)
+    finish_clearance(axes, run, float(clearance(run).min()), title_of_clearance(run), 1, outcome.has_resting(run))
 
 
 def mark_moment(axes, run, moment):
     style = dict(marker="o", color="none", markeredgecolor=CONTACT if moment.contact else BLACK, markeredgewidth=1.6,
                  markersize=9)
-    axes.plot(run.columns["t_s"][moment.row], moment.clearance_m, linestyle="none", zorder=5,
+    height_m = clearance(run)[moment.row] if moment.name == outcome.LINKS else moment.clearance_m
+    axes.plot(run.columns["t_s"][moment.row], height_m, linestyle="none", zorder=5,
               label="time drawn in the picture", **style)
+
+
+def mark_touching_links(axes, run):
+    """Red over the curve while links touch each other, which no curve shows: clearances are to other things."""
+    own, values_m = run.touching_itself(), np.minimum(clearance(run), FAR_M)
+    if own.any():
+        axes.plot(run.columns["t_s"], np.where(own, values_m, np.nan), color=CONTACT, linewidth=9, alpha=0.4,
+                  solid_capstyle="round", zorder=1.5, label=f"links touch each other ({LAWS[run.law]})")
+
+
+def title_of_clearance(run):
+    return "Least clearance to " + ("what the arm may not touch" if outcome.grasped(run) else "obstacles")
 
 
 def plot_both_clearances(axes, runs):
@@ -162,9 +181,10 @@ def plot_both_clearances(axes, runs):
         least_mm = values_m.min() * 1000
         axes.plot(run.columns["t_s"], values_m, **LAW_LINES[run.law], label=f"{LAWS[run.law]}: " + (
             f"least {least_mm:.1f} mm" if least_mm >= 0 else f"overlap of at most {-least_mm:.1f} mm"))
+        mark_touching_links(axes, run)
+    mark_changes(axes, runs[0])
     finish_clearance(axes, runs[0], min(float(clearance(run).min()) for run in runs),
-                     "Least clearance of the whole arm", 1, outcome.has_resting(runs[0]))
-    mark_events(axes, runs[0])
+                     title_of_clearance(runs[0]), 1, outcome.has_resting(runs[0]))
 
 
 def is_papers(run):
@@ -212,10 +232,11 @@ def plot_joints(axes, run, pattern, label, title):
 class Sheet:
     """A page of panels at fixed places, in inches from the upper left corner."""
 
-    def __init__(self, title, height, width=12.0):
+    def __init__(self, scenario, height, width=12.0):
         self.width, self.height = width, height
         self.figure = plt.figure(figsize=(width, height))
-        self.write(width / 2, 0.12, title, fontsize=13, fontweight="bold", ha="center")
+        self.write(width / 2, 0.12, scenario["title"], fontsize=13, fontweight="bold", ha="center")
+        self.write(width / 2, 0.4, scenario.get("task", ""), fontsize=10, ha="center", color="0.3")
 
     def write(self, left, top, text, **style):
         self.figure.text(left / self.width, 1 - top / self.height, text, va="top", **style)
@@ -232,8 +253,8 @@ class Sheet:
 
 def describe(sheet, left, run):
     """Above a scene: the verdict, what the arm came how near to, and where it ends."""
-    sheet.write(left, 0.45, outcome.verdict(run), fontsize=11.5, fontweight="bold")
-    sheet.write(left, 0.7, f"{outcome.approach(run)}\n{outcome.ending(run)}", fontsize=10)
+    sheet.write(left, 0.75, words.verdict(run), fontsize=11.5, fontweight="bold")
+    sheet.write(left, 1.0, f"{words.approach(run)}\n{words.ending(run)}", fontsize=10)
 
 
 def look(handle):
@@ -253,22 +274,27 @@ def explain(sheet, painters, top):
                         handler_map={tuple: HandlerTuple(ndivide=None, pad=0.2)})
 
 
-def plot_scenes(sheet, places, views):
+def plot_scenes(sheet, places, views, same_scale=False, every_name=False):
     """One picture for each (left, top, width, height) and (run, view), and below them their legend."""
-    painters = [drawing.Painter(sheet.panel(*place), view) for place, (_, view) in zip(places, views)]
+    painters = [drawing.Painter(sheet.panel(*place), view, every_name) for place, (_, view) in zip(places, views)]
     for painter, (run, _) in zip(painters, views):
         drawing.draw_scene(painter, run, closest(run))
+    if same_scale:
+        drawing.same_scale(painters)
+    for painter in painters:
+        painter.labels.place(painter.axes)
     explain(sheet, painters, places[0][1] + places[0][3] + 0.1)
     return painters
 
 
 def page(run, file):
     """Writes one PNG for one run: the scene from the side and from above, and its curves."""
-    sheet = Sheet(run.scenario["title"], 13.9)
+    sheet = Sheet(run.scenario, 15.4)
     describe(sheet, 0.2, run)
-    _, above = plot_scenes(sheet, [(0.1, 1.15, 5.9, 4.9), (6.7, 1.15, 5.1, 4.5)], [(run, OBLIQUE), (run, FROM_ABOVE)])
+    _, above = plot_scenes(sheet, [(0.1, 1.7, 5.9, 4.9), (6.7, 1.7, 5.1, 4.5)], [(run, OBLIQUE), (run, FROM_ABOVE)],
+                           every_name=True)
     finish(above.axes, "From above", 0, xlabel="x, m", ylabel="y, m")
-    upper, lower = sheet.row(2, 7.8, 2.3), sheet.row(2, 11.1, 2.3)
+    upper, lower = sheet.row(2, 9.3, 2.3), sheet.row(2, 12.6, 2.3)
     plot_clearances(upper[0], run) if closest(run) else plot_speeds_of_tool(upper[0], [run])
     plot_target_distance(upper[1], [run])
     plot_joints(lower[0], run, r"q\d+_rad", "angle, rad", "Joint angles")
@@ -279,7 +305,7 @@ def page(run, file):
 
 def numbers(runs):
     """The results printed in comparison(), and a sum of the joint angles at the end, one line for each law."""
-    return [f"{outcome.verdict(run)}; {outcome.approach(run)}; {outcome.ending(run)}; "
+    return [f"{words.verdict(run)}; {words.approach(run)}; {words.ending(run)}; ".replace("\n", "; ") +
             f"{run.columns['axis_distance_m'].min():.4f} m; {np.abs(run.joints()[-1]).sum():.3f} rad" for run in runs]
 
 
@@ -288,14 +314,13 @@ def comparison(runs, file):
 
     numbers() are in the file too, so that a picture can be compared without drawing it.
     """
-    sheet = Sheet(runs[0].scenario["title"], 10.6)
-    painters = plot_scenes(sheet, [(0.1, 1.15, 5.85, 4.8), (6.05, 1.15, 5.85, 4.8)], [(run, OBLIQUE) for run in runs])
-    drawing.same_scale(painters)
+    sheet = Sheet(runs[0].scenario, 11.7)
+    plot_scenes(sheet, [(0.1, 1.75, 5.85, 4.8), (6.05, 1.75, 5.85, 4.8)], [(run, OBLIQUE) for run in runs], True)
     for left, run in zip((0.2, 6.15), runs):
         describe(sheet, left, run)
     curves = [plot_both_clearances if closest(runs[0]) else plot_speeds_of_tool, plot_target_distance]
     curves += [plot_axis_distances] if is_papers(runs[0]) else []
-    for axes, plot in zip(sheet.row(len(curves), 8.0, 2.1), curves):
+    for axes, plot in zip(sheet.row(len(curves), 9.1, 2.1), curves):
         plot(axes, runs)
     return save(sheet.figure, file, {NUMBERS: "\n".join(numbers(runs))})
 

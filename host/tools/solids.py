@@ -35,6 +35,19 @@ BALL = np.stack([np.cos(AROUND) * np.sin(UP), np.sin(AROUND) * np.sin(UP), np.co
 CORNERS = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
 
 
+def reach_m(solid):
+    """How far a solid extends from its middle at most."""
+    if solid.kind == "box":
+        return float(np.linalg.norm(solid.size)) / 2
+    half = solid.size[1] / 2 if len(solid.size) > 1 else 0.0
+    return solid.size[0] + half
+
+
+def may_be_within(one, other, distance_m):
+    """False if two solids are farther apart for certain, which is cheaper to find than nearest_points()."""
+    return np.linalg.norm(one.position - other.position) - reach_m(one) - reach_m(other) < distance_m
+
+
 def surface(solid):
     """N x 3, m, world frame: points whose convex hull is the solid."""
     radius = solid.size[0]

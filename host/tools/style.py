@@ -9,10 +9,11 @@ import matplotlib.pyplot as plt
 # The palette of Okabe and Ito, which stays distinguishable with every kind of colour vision.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PINK = ("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2",
                                                       "#D55E00", "#CC79A7")
-# A colour has one meaning: orange and blue are the laws, pink is what moves, grey what rests, green the target.
+# A colour has one meaning: orange and blue are the laws, pink is what moves, yellow what is
+# held, grey what rests, green the target.
 LAW_COLOURS = {"paper": ORANGE, "sidestep": BLUE}
 LAW_LINES = {"paper": dict(color=ORANGE, linewidth=3), "sidestep": dict(color=BLUE, linewidth=1.9)}
-MOVING, RESTING, OTHER_ARM, TARGET, CONTACT = PINK, "0.72", "#7A6A00", GREEN, "#C00000"
+MOVING, HELD, RESTING, OTHER_ARM, TARGET, CONTACT = PINK, YELLOW, "0.72", "#7A6A00", GREEN, "#C00000"
 JOINTS = ["#332288", "#117733", "#DDAA33", "#88CCEE", "#882255", "#999933", BLACK]
 GREY = "0.55"
 
@@ -24,8 +25,9 @@ plt.rcParams.update({"font.size": 9.5, "axes.titlesize": 11, "axes.titlelocation
 def finish(axes, title, legend_columns=3, **settings):
     """Title and legend above the panel, where they cover no curve. legend_columns: 0 for no legend."""
     axes.set(**settings)
-    entries = len(axes.get_legend_handles_labels()[0])
-    rows = math.ceil(entries / legend_columns) if legend_columns else 0
+    labels = axes.get_legend_handles_labels()[1]
+    lines = len(labels) + sum(label.count("\n") for label in labels)
+    rows = math.ceil(lines / legend_columns) if legend_columns else 0
     if rows:
         axes.legend(ncol=legend_columns, loc="lower left", bbox_to_anchor=(-0.01, 1.0), borderaxespad=0.1,
                     columnspacing=1.2, handlelength=1.6, labelspacing=0.3)
