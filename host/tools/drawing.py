@@ -109,8 +109,7 @@ def draw_start_and_end(painter, run):
 def draw_surroundings(painter, run):
     for one in solids.surroundings(run):
         painter.solid(one, RESTING, 0.35, fits=max(one.size) < LARGE_M, behind=True)
-        painter.legend["surroundings, in the configuration"] = Patch(facecolor=(*matplotlib.colors.to_rgb("0.72"), 0.35),
-                                                                     edgecolor="0.4")
+        painter.legend["surroundings, in the configuration"] = Patch(facecolor=mixed(RESTING, 0.35), edgecolor="0.4")
 
 
 def kind_of(run, number, row):
@@ -216,8 +215,8 @@ def draw_scene(painter, run, moment):
     colour, row = LAW_COLOURS[run.law], outcome.drawn_row(run)
     if painter.view is OBLIQUE:
         draw_floor(painter, run)
-        painter.axes.text(0.0, 0.0, f"grid at the height of the base: {SQUARE_M:g} m", transform=painter.axes.transAxes, color="0.35",
-                          fontsize=9)
+        painter.axes.text(0.0, 0.0, f"grid at the height of the base: {SQUARE_M:g} m",
+                          transform=painter.axes.transAxes, color="0.35", fontsize=9)
         painter.axes.set_axis_off()
     draw_surroundings(painter, run)
     draw_start_and_end(painter, run)

@@ -30,7 +30,8 @@ def obstacle_count(run):
 def obstacle_name(run, number):
     """number: from 0."""
     entry = run.scenario["obstacles"][number]
-    return entry.get("body") or (f"person ({number + 1})" if entry.get("kind") == "person" else f"obstacle {number + 1}")
+    named = f"person ({number + 1})" if entry.get("kind") == "person" else f"obstacle {number + 1}"
+    return entry.get("body") or named
 
 
 def bodies(run):
