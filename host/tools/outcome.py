@@ -31,7 +31,7 @@ def obstacle_name(run, number):
     """number: from 0."""
     entry = run.scenario["obstacles"][number]
     named = f"person ({number + 1})" if entry.get("kind") == "person" else f"obstacle {number + 1}"
-    return entry.get("body") or named
+    return entry.get("name") or entry.get("body") or named
 
 
 def bodies(run):

@@ -20,6 +20,9 @@ void names_in_a_picture_cover_neither_each_other_nor_a_mark(void**) {
 void a_scenario_is_explained_in_its_own_whole_sentences(void**) {
   passes("tasks");
 }
+void an_obstacle_is_called_what_the_scenario_calls_it(void**) {
+  passes("names");
+}
 
 }  // namespace
 
@@ -29,6 +32,7 @@ int main() {
       cmocka_unit_test(the_decisive_moment_is_drawn),
       cmocka_unit_test(names_in_a_picture_cover_neither_each_other_nor_a_mark),
       cmocka_unit_test(a_scenario_is_explained_in_its_own_whole_sentences),
+      cmocka_unit_test(an_obstacle_is_called_what_the_scenario_calls_it),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -94,7 +94,15 @@ def tasks():
     assert runs.task_of("# One.\n# Two.\ntitle: x\n") == "One. Two." and runs.task_of("title: x\n") == ""
 
 
-CHECKS = {check.__name__: check for check in (arrivals, decisive_moments, placed_labels, tasks)}
+def names():
+    """An obstacle is called what the scenario calls it, else by its number, with which nobody counts persons."""
+    run = run_of((moment(2, 0.03), 0), (FAR_M, 0), (FAR_M, 0))
+    run.scenario["obstacles"][0]["name"], run.scenario["obstacles"][1]["kind"] = "table", "person"
+    assert [outcome.obstacle_name(run, i) for i in range(3)] == ["table", "person (2)", "obstacle 3"]
+    assert words.approach(run) == "nearest: 30.0 mm to table at 2.00 s (drawn)", words.approach(run)
+
+
+CHECKS = {check.__name__: check for check in (arrivals, decisive_moments, placed_labels, tasks, names)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
