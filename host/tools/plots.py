@@ -124,19 +124,20 @@ def finish_clearance(axes, run, lowest_m, title, legend_columns, resting=True):
 def curves_of_clearance(run):
     """(label, text at the curve, colour, m at every row) of every obstacle or person, the surroundings, the other arm.
 
-    Of what the tool grasps, which it may touch, only the rows at which it is nearest and so counts.
+    The recorded clearance to what the tool grasps has the allowed touch in it. As that to the surroundings it is drawn
+    only where no other explains the least clearance.
     """
     columns, curves, least_m = run.columns, [], run.columns["clearance_m"]
     for parts in outcome.bodies(run):
         label, colour = ("moving obstacle", MOVING) if outcome.moves(run, parts[0]) else ("obstacle at rest", GREY)
         name = outcome.obstacle_name(run, parts[0]).removeprefix("obstacle ")
         values_m = np.min([columns[f"o{i + 1}_clearance_m"] for i in parts], axis=0)
-        if parts[0] in outcome.grasped(run):
-            label, values_m = "what it grasps, where it counts", np.where(values_m == least_m, values_m, np.nan)
-        curves.append((label, name, colour, values_m))
-    if solids.surroundings(run):
+        if parts[0] not in outcome.grasped(run):
+            curves.append((label, name, colour, values_m))
+    rest = ["surroundings"] * bool(solids.surroundings(run)) + ["what it grasps"] * bool(outcome.grasped(run))
+    if rest:
         nearer = np.all([least_m < values_m for *_, values_m in curves], axis=0)
-        curves.append(("surroundings, where nearest", "", BLACK, np.where(nearer, least_m, np.nan)))
+        curves.append((f"{' or '.join(rest)}, where nearest", "", BLACK, np.where(nearer, least_m, np.nan)))
     if run.others:
         curves.append((outcome.OTHER_ARM, "", OTHER_ARM, columns["neighbour_clearance_m"]))
     return curves
