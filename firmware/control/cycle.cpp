@@ -25,7 +25,15 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
   if (guide) return guided_law(settings.sidestep, input, *guide, guide_s);
   if (input.target.is_posture()) return posture_law(settings.sidestep, input);
-  return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, model.arm, input.position_rad));
+  return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, input));
+}
+
+/// Weight of the tool's rotation in the shield's programme, m/rad: that of the law where the pose moves, 1 where it
+/// rests, so that an arm that evades keeps a held object level.
+double turn_weight_m(const Target& target) {
+  constexpr double kMoving_mps = 0.05;
+  const double speed_mps = target.velocity_mps.norm() + kTurnWeight_m * target.angular_velocity_radps.norm();
+  return 1.0 - (1.0 - kTurnWeight_m) * std::min(1.0, speed_mps / kMoving_mps);
 }
 
 NominalCommand scaled(NominalCommand nominal, double scale) {
@@ -68,8 +76,8 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                                  mode == Mode::kTrack ? settings.shield.person_weight : 0.0};
   const VelocityRange sustainable =
       sustainable_range(model.arm.limits, input.position_rad, input.position_rad, settings.period_s());
-  const ShieldResult safe =
-      shield(settings.shield, shield_input, sustainable, range, input.tool_jacobian, nominal_radps);
+  const ShieldResult safe = shield(settings.shield, shield_input, sustainable, range,
+                                   weighted_task(input.tool_jacobian, turn_weight_m(input.target)), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;
   if (safe.links_limit) report.limiting |= kLimitingSelf;
   report.nearest_links = safe.nearest_links;

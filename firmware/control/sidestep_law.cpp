@@ -7,6 +7,10 @@
 namespace sidestep {
 namespace {
 
+// Tuned on the campaign's follow6d.
+constexpr double kFullPosePosture = 4.0;
+constexpr double kFullPoseDamping = 0.4;  // of the weighted task, whose singular values are smaller
+
 /// v scaled down to a largest norm.
 Vector3 clipped(const Vector3& v, double largest) {
   const double norm = v.norm();
@@ -17,24 +21,28 @@ Vector3 clipped(const Vector3& v, double largest) {
 template <int rows>
 void follow(const SidestepGains& gains, const JointVector& joint_scale, const TaskJacobian& jacobian,
             const TaskVector& x, const JointVector& preferred_radps, NominalCommand& nominal) {
-  TaskJacobian scaled = jacobian;
+  TaskJacobian scaled = weighted_task(jacobian);
   for (Eigen::Index i = 0; i < scaled.cols(); ++i) scaled.col(i) *= joint_scale[i];
-  const DampedInverse<rows> inverse(gains.lambda_0, gains.sigma_0, scaled);
+  constexpr double kDamping = rows == 6 ? kFullPoseDamping : 1.0;
+  const DampedInverse<rows> inverse(kDamping * gains.lambda_0, kDamping * gains.sigma_0, scaled);
   nominal.damping = inverse.lambda();
-  nominal.velocity_radps =
-      preferred_radps + joint_scale.cwiseProduct(inverse * (x - jacobian.lazyProduct(preferred_radps)));
+  Eigen::Matrix<double, rows, 1> rest = x - jacobian.lazyProduct(preferred_radps);
+  if constexpr (rows == 6) rest.template tail<3>() *= kTurnWeight_m;
+  nominal.velocity_radps = preferred_radps + joint_scale.cwiseProduct(inverse * rest);
 }
 
 }  // namespace
 
-JointVector away_from_limits(const SidestepGains& gains, const Arm& arm, const JointVector& q_rad) {
-  const JointLimits& limits = arm.limits;
+JointVector away_from_limits(const SidestepGains& gains, const LawInput& input) {
+  const JointVector& q_rad = input.position_rad;
+  const JointLimits& limits = input.arm.limits;
+  const double gain_radps = gains.k_posture_per_s * (input.tool_jacobian.rows() == 6 ? kFullPosePosture : 1.0);
   JointVector away_radps(q_rad.size());
   for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
     const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
     const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
     const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
-    away_radps[i] = -gains.k_posture_per_s * arm.joint_scale[i] * share * share * share;
+    away_radps[i] = -gain_radps * input.arm.joint_scale[i] * share * share * share;
   }
   return away_radps;
 }

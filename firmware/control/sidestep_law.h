@@ -7,14 +7,15 @@ namespace sidestep {
 
 /// Joint velocities away from the position limits, rad/s, n x 1: -k_posture r^3, where r runs from -1 to 1 between the
 /// limits of the joint; times 0.25 m/rad for a prismatic joint. The cube keeps it small within the range. 0 for a joint
-/// without limits.
-JointVector away_from_limits(const SidestepGains& gains, const Arm& arm, const JointVector& q_rad);
+/// without limits. Four times as much where the target is a full pose, whose null space has three dimensions less.
+JointVector away_from_limits(const SidestepGains& gains, const LawInput& input);
 
 /// Our own law: the tool moves straight toward the target, at the target's velocity plus k_pos times the distance
 /// (clipped to v_max), through a damped inverse of the tool Jacobian in which
 /// 0.25 m/s of a prismatic joint weigh as much as 1 rad/s (Arm::joint_scale). `preferred_radps`, n x 1, acts in the
-/// null space. The law does not consider obstacles; the shield does. Repulsion here was tried on the random scenes of
-/// host/campaign, which all have a solution: it only lowered the share of arrivals.
+/// null space. Of a full pose the rotation has the weight kTurnWeight_m. The law does not consider obstacles; the
+/// shield does. Repulsion here was tried on the random scenes of host/campaign, which all have a solution: it only
+/// lowered the share of arrivals.
 NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps);
 
 }  // namespace sidestep

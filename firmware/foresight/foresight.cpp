@@ -1,5 +1,7 @@
 #include "firmware/foresight/foresight.h"
 
+#include <algorithm>
+
 namespace sidestep {
 namespace {
 
@@ -11,9 +13,19 @@ constexpr int kSearchesUntilWaiting = 50;
 constexpr int kSearchesAfterBad = 20;
 constexpr int kTrustedInARow = 4;
 
+// Where everything rests, forecasts are exact enough for a smaller difference. Later than this an arm is well under
+// way, and the exchange of guides costs what the new one gains.
+constexpr double kClearlyEarlier_s = 0.15;
+constexpr int kSearchesForFaster = 20;
+
+bool everything_rests(const Snapshot& now) {
+  const auto end = now.nearby.obstacles.begin() + now.nearby.count;
+  return now.tracking && is_at_rest(now.target) && std::none_of(now.nearby.obstacles.begin(), end, is_moving);
+}
+
 /// Whether a better guide need not be searched.
 bool is_good(const Forecast& forecast) {
-  return forecast.arrives && !forecast.collides && forecast.cost_s < kGoodCost_s;
+  return !forecast.collides && forecast.cost_s < kGoodCost_s;
 }
 
 }  // namespace
@@ -27,7 +39,8 @@ void Foresight::reset(bool tracking) {
   tree_planner_.reset();
   calls_ = 0;
   searches_left_ = 0;
-  goal_.clear();
+  faster_left_ = 0;
+  goal_.forget_goal();
 }
 
 void Foresight::adopt(const Guide& guide, const Forecast& forecast) {
@@ -68,22 +81,29 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   return guide;
 }
 
-void Foresight::search(const Snapshot& now) {
-  if (candidate_.knots > 0) {
-    // Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
-    // snapshot to the next.
-    const bool collided = expected_.collides;
-    expected_ = rollout_.run(now, guide_);
-    if (collided && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
-      expected_.collides = true;
-      expected_.cost_s += kCollisionCost_s;
-    }
-    const Forecast forecast = rollout_.run(now, candidate_);
-    if (forecast.cost_s < expected_.cost_s - kWorthAChange_s) adopt(candidate_, forecast);
-    expectation_.set(now, expected_);
-    candidate_ = Guide{};
-    return;
+/// Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
+/// snapshot to the next.
+void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
+  const bool collided = expected_.collides;
+  expected_ = rollout_.run(now, guide_);
+  if (collided && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
+    expected_.collides = true;
+    expected_.cost_s += kCollisionCost_s;
   }
+  const Forecast forecast = rollout_.run(now, candidate_);
+  if (forecast.cost_s < expected_.cost_s - worth_s) adopt(candidate_, forecast);
+  expectation_.set(now, expected_);
+  candidate_ = Guide{};
+}
+
+void Foresight::search_faster(const Snapshot& now) {
+  if (candidate_.knots > 0) return evaluate_candidate(now, kClearlyEarlier_s);
+  candidate_ = tree_planner_.plan_under_way(now, model_.settings.sidestep.v_max_mps);
+  if (candidate_.end_s() > now.now_s + expected_.cost_s - kClearlyEarlier_s) candidate_ = Guide{};
+}
+
+void Foresight::search(const Snapshot& now) {
+  if (candidate_.knots > 0) return evaluate_candidate(now, kWorthAChange_s);
   candidate_ = now.tracking ? plan_to_goal(now) : Guide{};
   if (candidate_.knots > 0) return;
   if (expected_.collides) candidate_ = planner_.plan_retreat(now);
@@ -94,11 +114,14 @@ void Foresight::search(const Snapshot& now) {
 const Guide& Foresight::update(const Snapshot& now) {
   if (!now.moves || now.tracking != tracking_) reset(now.tracking);
   if (!now.moves) return guide_;
-  if (now.tracking) goal_.set_goal(now.target);
+  if (now.tracking && goal_.set_goal(now.target)) faster_left_ = kSearchesForFaster;
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(expected_)) searches_left_ = kSearchesAfterBad;
   if (calls_++ % kAssessEvery_calls != 0) {
-    if (searches_left_ > 0) --searches_left_, search(now);
+    if (faster_left_ > 0 && is_good(expected_) && everything_rests(now))
+      --faster_left_, search_faster(now);
+    else if (searches_left_ > 0)
+      --searches_left_, search(now);
   } else if (!is_good(expected_) || !expectation_.holds(now)) {
     assess(now);
   }

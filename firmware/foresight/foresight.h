@@ -40,6 +40,11 @@ class Foresight {
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
   /// arrive. The law alone then continues.
   ///
+  /// A good forecast is improved where the target and all obstacles rest: 20 calls for each goal, other than
+  /// assessments, have the tree planner look for a guide that moves the tool no faster than sidestep.v_max and arrives
+  /// 0.15 s earlier, and run the same two rollouts, after which the candidate becomes the guide if it costs 0.15 s
+  /// less.
+  ///
   /// Guide::goal is what the searches found about the present goal (goal_search.h). No path to a posture is planned
   /// while it is blocked.
   ///
@@ -54,6 +59,8 @@ class Foresight {
   void reset(bool tracking);
   void assess(const Snapshot& now);
   void search(const Snapshot& now);
+  void search_faster(const Snapshot& now);
+  void evaluate_candidate(const Snapshot& now, double worth_s);
   Guide plan_to_goal(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
 
@@ -65,6 +72,7 @@ class Foresight {
   bool tracking_ = false;  ///< of the last snapshot
   int64_t calls_ = 0;
   int searches_left_ = 0;  ///< after a forecast that was not good
+  int faster_left_ = 0;    ///< calls that improve a good forecast for the present goal
   Guide guide_;
   Forecast expected_;              ///< under guide_
   Expectation expectation_;        ///< of expected_

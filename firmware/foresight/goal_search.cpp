@@ -9,10 +9,12 @@ constexpr int kSearchesUntilOutOfReach = 30;  // of at least 6 starts each
 
 }  // namespace
 
-void GoalSearch::set_goal(const Target& target) {
-  if (is_same_goal(target, target_, joint_scale_)) return;
+bool GoalSearch::set_goal(const Target& target) {
+  if (known_ && is_same_goal(target, target_, joint_scale_)) return false;
   clear();
+  known_ = true;
   target_ = target;
+  return true;
 }
 
 GoalFinding GoalSearch::finding() const {

@@ -11,9 +11,10 @@ class GoalSearch {
   explicit GoalSearch(const Arm& arm) : joint_scale_(arm.joint_scale) {}
 
   void clear() { failures_ = 0, blocked_ = false; }
+  void forget_goal() { clear(), known_ = false; }
 
-  /// Forgets what was found about another goal.
-  void set_goal(const Target& target);
+  /// Forgets what was found about another goal. Returns whether this one is new.
+  bool set_goal(const Target& target);
 
   /// A search for configurations with the tool at the target, of several random starts each.
   void searched(bool found) { failures_ = found ? 0 : failures_ + 1; }
@@ -26,6 +27,7 @@ class GoalSearch {
 
  private:
   JointVector joint_scale_;
+  bool known_ = false;  ///< target_
   Target target_;
   int failures_ = 0;
   bool blocked_ = false;

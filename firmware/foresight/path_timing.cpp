@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/model/kinematics.h"
+
 namespace sidestep {
 namespace {
 
@@ -11,6 +13,7 @@ constexpr double kLongestShare = 0.45;  // of a side
 constexpr int kMostHalvings = 5;
 constexpr int kMostPoints = 64;
 constexpr int kPointsOfBlend = 16;
+constexpr int kSpeedSamples = 16;     // of a side
 constexpr double kNegligible = 1e-9;  // of a length, rad
 
 /// A straight part of the path between two blended corners.
@@ -35,17 +38,30 @@ double largest_factor(const JointVector& bounds, const JointVector& direction) {
   return least;
 }
 
+/// The speed along `direction` at which the tool is as fast as fastest_mps at the fastest of the points sampled.
+double speed_for_tool(const Arm& arm, const JointVector& from_rad, const JointVector& to_rad,
+                      const JointVector& direction, double fastest_mps) {
+  if (!std::isfinite(fastest_mps)) return fastest_mps;
+  double tool_m = kNegligible;  // per length of the direction
+  for (int i = 0; i <= kSpeedSamples; ++i) {
+    const JointVector q_rad = from_rad + (to_rad - from_rad) * (static_cast<double>(i) / kSpeedSamples);
+    tool_m = std::max(tool_m, (tool_jacobian(forward_kinematics(arm, q_rad), 3) * direction).norm());
+  }
+  return fastest_mps / tool_m;
+}
+
 class Timing {
  public:
-  Timing(const Arm& arm, const JointPath& path_rad, double share, const IsFree& is_free)
+  Timing(const Arm& arm, const JointPath& path_rad, double share, const IsFree& is_free, double fastest_mps)
       : path_rad_(path_rad), accelerations_(share * arm.limits.acceleration_radps2), is_free_(is_free) {
     const JointVector velocities = share * arm.limits.velocity_radps;
     for (int i = 1; i < path_rad.size(); ++i) {
       const JointVector way = path_rad[i] - path_rad[i - 1];
       const double length = way.cwiseQuotient(arm.joint_scale).norm();
       const JointVector direction = way / length;
-      straights_.add(
-          {direction, length, largest_factor(velocities, direction), largest_factor(accelerations_, direction)});
+      const double fastest = std::min(largest_factor(velocities, direction),
+                                      speed_for_tool(arm, path_rad[i - 1], path_rad[i], direction, fastest_mps));
+      straights_.add({direction, length, fastest, largest_factor(accelerations_, direction)});
     }
     for (int i = 0; i + 1 < straights_.size(); ++i) corners_.add(blended(i));
     limit_speeds();
@@ -144,8 +160,9 @@ class Timing {
 
 }  // namespace
 
-Guide timed_guide(const Arm& arm, const JointPath& path_rad, double share, double start_s, const IsFree& is_free) {
-  return Timing(arm, path_rad, share, is_free).guide(start_s);
+Guide timed_guide(const Arm& arm, const JointPath& path_rad, double share, double start_s, const IsFree& is_free,
+                  double fastest_mps) {
+  return Timing(arm, path_rad, share, is_free, fastest_mps).guide(start_s);
 }
 
 }  // namespace sidestep

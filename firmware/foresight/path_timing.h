@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "firmware/base/bounded_list.h"
 #include "firmware/control/types/guide.h"
@@ -21,7 +22,10 @@ using IsFree = std::function<bool(const JointVector& q_rad)>;
 /// of the shorter side. The distance is halved while the parabola is not free, up to five times; then the arm stops at
 /// the corner. Lengths are norms of joint positions divided by Arm::joint_scale.
 ///
+/// On the sides the tool moves no faster than fastest_mps, as sampled at 17 points of each.
+///
 /// Without knots if they are too many for a guide.
-Guide timed_guide(const Arm& arm, const JointPath& path_rad, double share, double start_s, const IsFree& is_free);
+Guide timed_guide(const Arm& arm, const JointPath& path_rad, double share, double start_s, const IsFree& is_free,
+                  double fastest_mps = std::numeric_limits<double>::infinity());
 
 }  // namespace sidestep

@@ -15,7 +15,8 @@ constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a c
 struct Forecast {
   bool arrives = false;   ///< the tool is at the target, or the arm in the posture, at the end; always true in HOLD
   bool collides = false;  ///< the clearance falls below half of what is needed (in HOLD below 1.5 times)
-  double cost_s = 0.0;    ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides
+  double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
+                        ///< The first two count in full from 0.1 m on if the target is a moving pose, less below
 
   double period_s = 0.0;                              ///< between two points of the path
   BoundedList<JointVector, kMaxPathPoints> path_rad;  ///< one period after the snapshot, and so on
@@ -53,6 +54,9 @@ bool is_same_goal(const Target& a, const Target& b, const JointVector& joint_sca
 
 /// The target after_s later: it keeps its velocity for kTargetCoast_s and then rests.
 Target predicted_target(const Target& target, double after_s);
+
+/// Whether the target has no velocity.
+bool is_at_rest(const Target& target);
 
 /// Whether the tool is within 10 mm of the target and, where the target tracks orientation, within 0.05 rad.
 bool is_at(const LinkPoses& poses, const Target& target);

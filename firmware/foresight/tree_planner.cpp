@@ -229,18 +229,28 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
   return true;
 }
 
-/// The path as a guide from where the arm is now; the arm has moved on since the trees began.
-Guide TreePlanner::finish(const Snapshot& from) {
+/// From where the arm is now; it has moved on since the trees began. An arm under way leaves out all points that it
+/// need not pass, so that it does not turn back; an arm in a dead end has hardly moved. Empty if the way there is not
+/// free.
+JointPath TreePlanner::path_from(const JointVector& q_rad, bool under_way) const {
+  int checks = 0, first = under_way ? path_.size() - 1 : 0;
+  while (first > 0 && !free_.contains_way(q_rad, path_[first], checks)) --first;
   JointPath path;
-  path.add(from.arm.position_rad);
-  for (const JointVector& q_rad : path_)
-    if (length_rad(path[path.size() - 1], q_rad) > 1e-3) path.add(q_rad);
+  path.add(q_rad);
+  for (; first < path_.size(); ++first)
+    if (length_rad(path[path.size() - 1], path_[first]) > 1e-3) path.add(path_[first]);
+  if (path.size() < 2 || !free_.contains_way(path[0], path[1], checks)) path.clear();
+  return path;
+}
+
+/// The path as a guide.
+Guide TreePlanner::finish(const Snapshot& from, double fastest_mps) {
+  const JointPath path = path_from(from.arm.position_rad, std::isfinite(fastest_mps));
   valid_ = false;
-  int checks = 0;
-  if (path.size() < 2 || !free_.contains_way(path[0], path[1], checks)) return {};
+  if (path.size() == 0) return {};
   for (const double pause_s : kPauses_s) {
-    Guide guide = timed_guide(model_.arm, path, kLimitShare, from.now_s + pause_s,
-                              [&](const JointVector& q_rad) { return free_.contains(q_rad); });
+    const auto is_free = [&](const JointVector& q_rad) { return free_.contains(q_rad); };
+    Guide guide = timed_guide(model_.arm, path, kLimitShare, from.now_s + pause_s, is_free, fastest_mps);
     if (guide.knots == 0 || guide.end_s() > from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s) return {};
     if (is_clear_of_movers(from, guide)) return guide;
   }
@@ -253,7 +263,7 @@ bool TreePlanner::is_blocked(const Snapshot& from) {
   return !free_.contains(from.target.posture_rad);
 }
 
-Guide TreePlanner::plan(const Snapshot& from) {
+Guide TreePlanner::run_slice(const Snapshot& from, double fastest_mps) {
   if (!rests(from.target)) return {};
   if (!is_current(from)) begin(from);
   if (path_.size() == 0 && slices_left_-- == 0) begin_anew(from);
@@ -263,7 +273,7 @@ Guide TreePlanner::plan(const Snapshot& from) {
   if (path_.size() == 0) grow();
   if (path_.size() == 0) return {};
   shorten();
-  return shortcuts_left_ == 0 ? finish(from) : Guide{};
+  return shortcuts_left_ == 0 ? finish(from, fastest_mps) : Guide{};
 }
 
 }  // namespace sidestep

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "firmware/base/split_mix64.h"
 #include "firmware/foresight/free_space.h"
 #include "firmware/foresight/path_timing.h"
@@ -26,7 +28,11 @@ class TreePlanner {
   /// one; it starts with zero velocity, now or after a pause, ends at least 1 s before the horizon, and up to the
   /// horizon obstacles that move or turn, at their present velocities, stay foresight.clearance_m away (slow ones less,
   /// required_clearance.h). Else without knots, for example while the target moves.
-  Guide plan(const Snapshot& from);
+  Guide plan(const Snapshot& from) { return run_slice(from, std::numeric_limits<double>::infinity()); }
+
+  /// The same for an arm that is under way already: the guide leads straight to the last point of the path to which the
+  /// way is free. The tool is no faster than fastest_mps.
+  Guide plan_under_way(const Snapshot& from, double fastest_mps) { return run_slice(from, fastest_mps); }
 
   /// Whether the posture of the target, in a snapshot in TRACK, is too near to an obstacle at rest or to the arm
   /// itself.
@@ -60,7 +66,9 @@ class TreePlanner {
   void shorten();
   void try_shortcut();
   double length_rad(const JointVector& from_rad, const JointVector& to_rad) const;
-  Guide finish(const Snapshot& from);
+  Guide run_slice(const Snapshot& from, double fastest_mps);
+  JointPath path_from(const JointVector& q_rad, bool under_way) const;
+  Guide finish(const Snapshot& from, double fastest_mps);
   bool is_clear_of_movers(const Snapshot& from, const Guide& guide) const;
 
   const Model& model_;

@@ -5,6 +5,7 @@
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
 #include "tests/support/foresight_loop.h"
+#include "tests/support/random.h"
 
 using namespace sidestep;
 using test::ClosedLoop;
@@ -56,6 +57,58 @@ void there_is_no_guide_where_the_law_arrives_without_one(void**) {
                      static_cast<int>(ForesightStatus::kDirect));
   }
   check(world.error_m() < 1e-3, "%g m", world.error_m());
+}
+
+/// Until the tool is within 10 mm and 0.05 rad for good, of 5 s.
+double arrival_s(World& world) {
+  double arrival_s = 0.0;
+  for (int i = 1; i <= 500; ++i) {
+    world.cycle();
+    const LinkPoses poses = forward_kinematics(world.loop.model.arm, world.loop.arm.position_rad);
+    if (!is_at(poses, world.loop.target)) arrival_s = 0.01 * i;
+  }
+  return arrival_s;
+}
+
+/// The pose that the tool has in a random configuration.
+void aim_at_a_pose(World& world, test::Random& random) {
+  const LinkPoses goal = forward_kinematics(world.loop.model.arm, random.configuration(world.loop.model.arm, 0.9));
+  world.loop.target.position_m = goal.tool_position;
+  world.loop.target.tracks_orientation = true;
+  world.loop.target.orientation = Quaternion(goal.tool_rotation);
+}
+
+void where_everything_rests_a_guide_that_is_clearly_faster_replaces_the_law(void**) {
+  int faster = 0;
+  double saved_s = 0.0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    test::Random with(seed), without(seed);
+    World world(Vector3::Zero(), true), law(Vector3::Zero(), false);
+    aim_at_a_pose(world, with);
+    aim_at_a_pose(law, without);
+    const double law_s = arrival_s(law), world_s = arrival_s(world);
+    test::check_stream(world.loop);
+    if (law_s > 3.9) continue;  // the law is no good
+    check(world_s < law_s + 0.1, "seed %d: %g s, the law %g s", static_cast<int>(seed), world_s, law_s);
+    saved_s += law_s - world_s;
+    if (world_s < law_s - 0.15) ++faster;
+  }
+  check(faster >= 3 && saved_s > 1.0, "%d were faster, by %g s", faster, saved_s);
+}
+
+void where_an_obstacle_moves_no_guide_replaces_a_law_that_arrives(void**) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    test::Random with(seed), without(seed);
+    World world(Vector3::Zero(), true), law(Vector3::Zero(), false);
+    aim_at_a_pose(world, with);
+    aim_at_a_pose(law, without);
+    for (World* one : {&world, &law}) one->loop.add_sphere(Vector3(1.6, 0.0, 0.5), Vector3(-0.01, 0.0, 0.0), 0.1);
+    if (arrival_s(law) > 3.5) continue;
+    for (int i = 0; i < 200; ++i) {
+      world.cycle();
+      assert_int_equal(world.guide->knots, 0);
+    }
+  }
 }
 
 void the_same_inputs_give_the_same_guides(void**) {
@@ -137,6 +190,8 @@ int main() {
       cmocka_unit_test(the_arm_arrives_behind_a_bar_that_blocks_the_direct_path),
       cmocka_unit_test(without_foresight_the_arm_keeps_clear_of_the_bar),
       cmocka_unit_test(there_is_no_guide_where_the_law_arrives_without_one),
+      cmocka_unit_test(where_everything_rests_a_guide_that_is_clearly_faster_replaces_the_law),
+      cmocka_unit_test(where_an_obstacle_moves_no_guide_replaces_a_law_that_arrives),
       cmocka_unit_test(the_same_inputs_give_the_same_guides),
       cmocka_unit_test(guides_keep_the_joint_limits),
       cmocka_unit_test(a_blocked_guide_is_dropped_within_100_ms),

@@ -17,6 +17,17 @@ struct LawInput {
   const Clearance& clearance;
 };
 
+/// In a full pose a turn of the tool by 1 rad weighs as much as a way of 0.1 m, about the size of a hand: where joints
+/// at their limits or near a singular configuration cannot do both, the tool keeps its position and turns late. Tuned
+/// on the campaign's follow6d.
+constexpr double kTurnWeight_m = 0.1;
+
+/// The task Jacobian with the rows of the rotation times this weight. Of a position target it is the same.
+inline TaskJacobian weighted_task(TaskJacobian jacobian, double turn_weight_m = kTurnWeight_m) {
+  if (jacobian.rows() == 6) jacobian.bottomRows<3>() *= turn_weight_m;
+  return jacobian;
+}
+
 /// The output of a law: the joint velocity u before the shield.
 struct NominalCommand {
   JointVector velocity_radps;

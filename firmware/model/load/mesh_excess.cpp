@@ -46,7 +46,8 @@ class Surface {
       for (int i = 0; i < rows; ++i)
         for (int j = 0; j < 2 * (rows - i) - 1; ++j) {
           const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-          add((i + third) / rows, (j / 2 + third) / rows, face_m2 / (rows * rows));
+          const int column = j / 2;
+          add((i + third) / rows, (column + third) / rows, face_m2 / (rows * rows));
         }
     }
   }

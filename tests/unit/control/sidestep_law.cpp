@@ -17,8 +17,10 @@ NominalCommand nominal_at(const JointVector& q_rad, const Target& target) {
   const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
   const JointVector at_rest = JointVector::Zero(q_rad.size());
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
-  return sidestep_law(kGains, {lwa3(), poses, jacobian, q_rad, at_rest, target, ObstacleView{}, Clearance{}},
-                      away_from_limits(kGains, lwa3(), q_rad));
+  const ObstacleView no_obstacles{};
+  const Clearance clearance{};
+  const LawInput input{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance};
+  return sidestep_law(kGains, input, away_from_limits(kGains, input));
 }
 
 /// A target that the tool has already reached.
@@ -32,7 +34,7 @@ Target target_at(const JointVector& q_rad, bool with_orientation) {
 }
 
 double smallest_singular_value(const JointVector& q_rad, int rows) {
-  const TaskJacobian jacobian = tool_jacobian(forward_kinematics(lwa3(), q_rad), rows);
+  const TaskJacobian jacobian = weighted_task(tool_jacobian(forward_kinematics(lwa3(), q_rad), rows));
   return Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues()[rows - 1];
 }
 

@@ -1,5 +1,6 @@
 #include "firmware/foresight/path_timing.h"
 
+#include "firmware/model/kinematics.h"
 #include "tests/support/check.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
@@ -80,6 +81,22 @@ void a_straight_way_takes_the_least_time(void**) {
   check_near(timed_guide(arm, path, 1.0, 0.0, anywhere).end_s(), 2.0 + 2.0 / 3.0, 1e-9);
 }
 
+/// The speed is that of the fastest point of the way, so that the tool reaches its limit once.
+void the_tool_keeps_its_speed_limit_on_a_straight_way(void**) {
+  Random random(3);
+  const double limit_mps = 0.25;
+  for (int trial = 0; trial < 50; ++trial) {
+    const Guide guide = timed_guide(lwa3(), random_path(random, 2), kShare, 0.0, anywhere, limit_mps);
+    double fastest_mps = 0.0;
+    for (double at_s = 0.0; at_s < guide.end_s(); at_s += 0.01) {
+      const GuidePoint point = point_of(guide, at_s);
+      const TaskJacobian jacobian = tool_jacobian(forward_kinematics(lwa3(), point.position_rad), 3);
+      fastest_mps = std::max(fastest_mps, (jacobian * point.velocity_radps).norm());
+    }
+    check(fastest_mps < 1.02 * limit_mps && fastest_mps > 0.9 * limit_mps, "trial %d: %g m/s", trial, fastest_mps);
+  }
+}
+
 void a_corner_that_cannot_be_blended_is_a_stop(void**) {
   Random random(3);
   for (int trial = 0; trial < 20; ++trial) {
@@ -107,6 +124,7 @@ int main() {
       cmocka_unit_test(a_timed_path_leads_from_rest_to_rest_near_the_polyline),
       cmocka_unit_test(velocities_and_accelerations_stay_within_the_limits),
       cmocka_unit_test(a_straight_way_takes_the_least_time),
+      cmocka_unit_test(the_tool_keeps_its_speed_limit_on_a_straight_way),
       cmocka_unit_test(a_corner_that_cannot_be_blended_is_a_stop),
       cmocka_unit_test(a_path_with_too_many_corners_gives_no_guide),
   };

@@ -148,7 +148,8 @@ void lockstep_sends_all_messages_with_one_utime_and_keeps_the_world_at_rest_unti
   assert_int_equal(controller.obstacles.size(), controller.arms.size());
   for (size_t k = 0; k < controller.arms.size(); ++k) {
     const int64_t utime = controller.arms[k].utime;
-    assert_int_equal(utime, controller.arms[0].utime + static_cast<int64_t>(k) * 10'000);
+    // After the first answer the clock jumps to the start of every run.
+    if (k > 0) assert_int_equal(utime, 1'000'000'000 + static_cast<int64_t>(k) * 10'000);
     assert_int_equal(controller.obstacles[k].utime, utime);
     assert_int_equal(controller.targets[k].utime, utime);
     const double t_s = k < 10 ? 0.0 : 0.01 * static_cast<double>(k - 10);
