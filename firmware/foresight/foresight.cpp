@@ -20,6 +20,8 @@ bool is_good(const Forecast& forecast) {
 
 void Foresight::reset(bool tracking) {
   tracking_ = tracking;
+  retreated_ = false;
+  person_retreat_.reset();
   expectation_.clear();
   adopt(Guide{}, Forecast{});
   candidate_ = Guide{};
@@ -94,6 +96,11 @@ void Foresight::search(const Snapshot& now) {
 const Guide& Foresight::update(const Snapshot& now) {
   if (!now.moves || now.tracking != tracking_) reset(now.tracking);
   if (!now.moves) return guide_;
+  if (person_retreat_.update(now)) {
+    retreated_ = true;
+    return person_retreat_.guide();
+  }
+  if (retreated_) reset(now.tracking);  // what was planned before is out of date
   if (now.tracking) goal_.set_goal(now.target);
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(expected_)) searches_left_ = kSearchesAfterBad;

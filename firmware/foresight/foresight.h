@@ -2,6 +2,7 @@
 
 #include "firmware/foresight/expectation.h"
 #include "firmware/foresight/goal_search.h"
+#include "firmware/foresight/person_retreat.h"
 #include "firmware/foresight/planner.h"
 #include "firmware/foresight/rollout.h"
 #include "firmware/foresight/tree_planner.h"
@@ -19,10 +20,12 @@ class Foresight {
         planner_(model),
         tree_planner_(model),
         goal_(model.arm),
-        expectation_(model.arm) {}
+        expectation_(model.arm),
+        person_retreat_(model) {}
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
-  /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s.
+  /// plans, and a search for a retreat from persons. A forecast is good if the arm arrives, does not collide and is
+  /// away from the target for less than 4 s.
   ///
   /// Every fifth call is an assessment, unless the last forecast is good and the snapshot is as expected then
   /// (expectation.h). It runs a rollout with the present guide and one without a guide. The guide is dropped if the
@@ -46,6 +49,9 @@ class Foresight {
   /// In HOLD a forecast is good if the arm does not collide. Only plan_retreat() is called, and the guide is dropped
   /// after its end as soon as the rollout without it does not collide.
   ///
+  /// Among persons a retreat from them (person_retreat.h) comes before all this: as long as it leads, nothing is
+  /// simulated or planned, and then everything begins anew.
+  ///
   /// A snapshot of another mode than HOLD and TRACK, and a change between these two, resets everything. The same
   /// sequence of snapshots gives the same guides.
   const Guide& update(const Snapshot& now);
@@ -66,8 +72,10 @@ class Foresight {
   int64_t calls_ = 0;
   int searches_left_ = 0;  ///< after a forecast that was not good
   Guide guide_;
-  Forecast expected_;              ///< under guide_
-  Expectation expectation_;        ///< of expected_
+  Forecast expected_;        ///< under guide_
+  Expectation expectation_;  ///< of expected_
+  PersonRetreat person_retreat_;
+  bool retreated_ = false;         ///< from persons, in the call before
   Guide candidate_;                ///< a plan that has no rollout yet; no knots: none
   int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted whose rollout without it did not collide
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
