@@ -243,6 +243,7 @@ struct SimWire::Network {
 
   template <typename Message>
   void publish(const std::string& channel, const Message& message, int64_t utime) {
+    if (clock_us > 0 && utime - clock_us > kJump_us) jumped_us += utime - clock_us;
     clock_us = utime;
     const int size = message.getEncodedSize();
     bytes.resize(static_cast<size_t>(size));
@@ -251,12 +252,13 @@ struct SimWire::Network {
     write_log(channel, bytes.data(), size);
   }
 
-  // Time stamps are of the simulator's clock, so that a player plays the log of a lockstep run at the speed of the arm.
+  // Time stamps are of the simulator's clock, so that a player plays the log of a lockstep run at the speed of the arm,
+  // and does not wait where this clock jumps to the start of the run (lockstep.cpp).
   void write_log(const std::string& channel, void* data, int size) {
     if (!log || !log_good) return;
     lcm::LogEvent event;
     event.eventnum = 0;
-    event.timestamp = clock_us;
+    event.timestamp = clock_us - jumped_us;
     event.channel = channel;
     event.datalen = size;
     event.data = data;
@@ -268,7 +270,9 @@ struct SimWire::Network {
   std::deque<Subscription> subscriptions;  ///< a deque: LCM keeps their addresses
   std::unique_ptr<lcm::LogFile> log;
   bool log_good = true;
-  int64_t clock_us = 0;  ///< utime of the last message sent
+  static constexpr int64_t kJump_us = 10'000'000;
+  int64_t clock_us = 0;   ///< utime of the last message sent
+  int64_t jumped_us = 0;  ///< sum of its jumps
   std::vector<uint8_t> bytes;
   std::optional<ReceivedMessage> received;  ///< by the last lcm.handle()
   int64_t malformed = 0;
