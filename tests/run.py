@@ -130,9 +130,9 @@ def show(outcome):
 
 
 def run_all(binaries, jobs, limit_s, under):
-    prefix = isolation() + under
-    with ThreadPoolExecutor(jobs) as pool:
-        futures = [pool.submit(run, binary, prefix, limit_s) for binary in binaries]
+    isolated = isolation()
+    with ThreadPoolExecutor(jobs or (2 if isolated else 1)) as pool:
+        futures = [pool.submit(run, binary, isolated + under, limit_s) for binary in binaries]
         try:
             for future in as_completed(futures):
                 show(future.result())
@@ -147,7 +147,8 @@ def run_all(binaries, jobs, limit_s, under):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
-    parser.add_argument("--jobs", type=int, default=1, help="number of parallel binaries (default %(default)s)")
+    parser.add_argument("--jobs", type=int,
+                        help="number of parallel binaries (default 2, or 1 where they would share a network)")
     parser.add_argument("--time-limit", type=float, default=360, metavar="S",
                         help="of each binary (default %(default)s)")
     parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND",
