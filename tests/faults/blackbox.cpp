@@ -53,11 +53,12 @@ struct Scene {
     track();
   }
 
-  /// Runs until the controller has tracked for 1.5 s without interruption. A pause of the machine may interrupt it.
+  /// Runs until the controller has tracked for 1.5 s without interruption, for at most 60 s: pauses of a busy machine
+  /// interrupt it.
   void track() {
     int in_a_row = 0;
     for (int i = 0; in_a_row < 6; ++i) {
-      check(i < 60, "%s", controller.output().c_str());
+      check(i < 240, "%s", controller.output().c_str());
       arm.target_m = i % 2 ? Vector3(0.1, 0.45, 0.7) : Vector3(-0.4, 0.1, 0.9);
       const auto received = static_cast<std::ptrdiff_t>(arm.peer.statuses.size());
       arm.run(0.25);
