@@ -29,7 +29,8 @@ ObstacleView view_obstacles(const Model& model, const Latest<ObstacleSet>& obsta
 OtherFrames present_others(const Model& model, const Inputs& inputs, double now_s) {
   const Latest<OtherJoints>& joints = inputs.other_joints;
   OtherFrames frames = joints.message ? place_other_joints(model.arm, *joints.message) : model.arm.other_frames;
-  if (joints.message && !joints.fresh(now_s, model.settings.timeouts.obstacles_s)) frames.velocity.fill(0.0);
+  if (joints.message && !joints.fresh(now_s, model.settings.timeouts.obstacles_s))
+    for (OtherFrame& frame : frames.joints) frame.velocity = 0.0;
   const Attachments* attachments = inputs.attachments.message;
   if (attachments && !attachments->is_empty()) frames.attachments = attachments;
   return frames;

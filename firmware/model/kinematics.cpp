@@ -37,11 +37,11 @@ LinkPoses forward_kinematics(const Arm& arm, const JointVector& q_rad, const Oth
     poses.rotation[i].col(1) = c * y - s * x;
   }
   poses.others = &others;
-  for (size_t j = 0; j < arm.other_joints.size(); ++j) {
-    const int frame = other_frame(static_cast<int>(j)), body = arm.other_joints[j].body;
+  for (int j = 0; j < others.joints.size(); ++j) {
+    const int frame = other_frame(j), body = arm.other_joints[static_cast<size_t>(j)].body;
     for (int axis = 0; axis < 3; ++axis)
-      poses.rotation[frame].col(axis) = rotated(poses.rotation[body], others.rotation[j].col(axis));
-    poses.origin[frame] = poses.origin[body] + rotated(poses.rotation[body], others.origin[j]);
+      poses.rotation[frame].col(axis) = rotated(poses.rotation[body], others.joints[j].rotation.col(axis));
+    poses.origin[frame] = poses.origin[body] + rotated(poses.rotation[body], others.joints[j].origin);
   }
   const Matrix3& last = poses.rotation[arm.joints];
   for (int axis = 0; axis < 3; ++axis)

@@ -17,18 +17,18 @@ OtherFrames place_other_joints(const Arm& arm, const OtherJoints& joints) {
   for (size_t j = 0; j < arm.other_joints.size(); ++j) {
     const OtherJoint& joint = arm.other_joints[j];
     const double q = resolved(joint, joints.position, j, joint.offset);
-    frames.velocity[j] = resolved(joint, joints.velocity, j, 0.0);
     const Matrix3 placement = joint.parent_from_joint.linear();
-    frames.rotation[j] = placement;
-    frames.origin[j] = joint.parent_from_joint.translation();
+    OtherFrame frame{placement, joint.parent_from_joint.translation(), resolved(joint, joints.velocity, j, 0.0)};
     if (joint.prismatic)
-      frames.origin[j] += placement * (q * joint.axis);
+      frame.origin += placement * (q * joint.axis);
     else
-      frames.rotation[j] = placement * Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
-    if (joint.parent < 0) continue;
-    const auto parent = static_cast<size_t>(joint.parent);
-    frames.origin[j] = frames.origin[parent] + frames.rotation[parent] * frames.origin[j];
-    frames.rotation[j] = (frames.rotation[parent] * frames.rotation[j]).eval();
+      frame.rotation = placement * Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
+    if (joint.parent >= 0) {
+      const OtherFrame& parent = frames.joints[joint.parent];
+      frame.origin = parent.origin + parent.rotation * frame.origin;
+      frame.rotation = (parent.rotation * frame.rotation).eval();
+    }
+    frames.joints.add(frame);
   }
   return frames;
 }
@@ -37,7 +37,7 @@ Vector3 other_velocity_at(const Arm& arm, const LinkPoses& poses, int other_join
   Vector3 velocity_mps = Vector3::Zero();
   for (int j = other_joint; j >= 0; j = arm.other_joints[static_cast<size_t>(j)].parent) {
     const OtherJoint& joint = arm.other_joints[static_cast<size_t>(j)];
-    const double velocity = poses.others->velocity[static_cast<size_t>(j)];
+    const double velocity = poses.others->joints[j].velocity;
     if (velocity == 0.0) continue;
     const auto frame = static_cast<size_t>(other_frame(j));
     const Vector3 axis = poses.rotation[frame] * joint.axis;

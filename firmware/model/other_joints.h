@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <string>
 
+#include "firmware/base/bounded_list.h"
 #include "firmware/model/types.h"
 
 namespace sidestep {
 
-constexpr int kMaxOtherJoints = 32;  ///< movable joints outside the chain that carry shapes
+constexpr int kMaxOtherJoints = 96;  ///< movable joints outside the chain that carry shapes: two hands with 40 each
 
 /// A movable joint that is no part of the chain but moves shapes: a lift below the base, a head, another arm, fingers.
 /// Its frame moves with the links that it carries, seen from the body of the arm: for a joint below the base these are
@@ -37,13 +38,17 @@ struct OtherJoints {
 
 struct Attachments;
 
-/// What hangs on the chain: where the joints outside it are (per joint its frame in the frame of the arm's body that
-/// carries it, and its velocity), and what the tool holds.
+/// The frame of a joint outside the chain, in the frame of the arm's body that carries it, and its velocity.
+struct OtherFrame {
+  Matrix3 rotation;
+  Vector3 origin;         ///< m
+  double velocity = 0.0;  ///< rad/s, or m/s
+};
+
+/// What hangs on the chain: where the joints outside it are, and what the tool holds.
 struct OtherFrames {
-  std::array<Matrix3, kMaxOtherJoints> rotation;
-  std::array<Vector3, kMaxOtherJoints> origin;  ///< m
-  std::array<double, kMaxOtherJoints> velocity{};
-  const Attachments* attachments = nullptr;  ///< null: nothing; must outlive this
+  BoundedList<OtherFrame, kMaxOtherJoints> joints;  ///< in the order of Arm::other_joints
+  const Attachments* attachments = nullptr;         ///< null: nothing; must outlive this
 };
 
 struct Arm;

@@ -46,13 +46,15 @@ std::string kind_of(const LinkShape& shape) {
 }
 
 void print_shapes(const Arm& arm) {
-  fmt::print("{} shapes\n  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8}  {}\n", arm.shapes.size(), "", "body", "radius",
+  size_t width = 24;
+  for (const LinkShape& shape : arm.shapes) width = std::max(width, shape.link.size());
+  fmt::print("{} shapes\n  {:<{}} {:>5} {:>8} {:>8} {:>8} {:>8}  {}\n", arm.shapes.size(), "", width, "body", "radius",
              "length", "excess", "largest", "kind");
   for (const LinkShape& shape : arm.shapes) {
     const Capsule& capsule = shape.capsule_body;
     const bool is_piece = shape.solid.kind == CoreKind::kPolyhedron && !shape.is_capsule;
     const auto excess = [&](double m) { return is_piece ? fmt::format("{:.4f}", m) : "-"; };
-    fmt::print("  {:<24} {:>5} {:>8.4f} {:>8.4f} {:>8} {:>8}  {}\n", shape.link, shape.body, capsule.radius_m,
+    fmt::print("  {:<{}} {:>5} {:>8.4f} {:>8.4f} {:>8} {:>8}  {}\n", shape.link, width, shape.body, capsule.radius_m,
                (capsule.end - capsule.start).norm(), excess(shape.excess_p95_m), excess(shape.excess_m),
                kind_of(shape));
   }

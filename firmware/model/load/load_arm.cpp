@@ -139,7 +139,7 @@ Arm load_arm(const std::string& urdf_file, const std::string& base, const std::s
     fail("{}: no link from '{}' to '{}' has collision geometry, so nothing could be kept clear", urdf_file, base, tip);
   if (arm.shapes.size() > static_cast<size_t>(kMaxLinkShapes))
     fail(
-        "{}: {} collision shapes from '{}' to '{}', at most {} are possible: fewer capsules_per_mesh, or fewer "
+        "{}: {} collision shapes from '{}' to '{}', at most {} are possible: fewer pieces_per_mesh, or fewer "
         "joint_positions of joints below the arm, leave shapes out",
         urdf_file, arm.shapes.size(), base, tip, kMaxLinkShapes);
   return arm;

@@ -33,6 +33,13 @@ std::string links_behind(const urdf::Link& link) {
   return names;
 }
 
+bool has_joint_behind(const urdf::Link& link) {
+  return std::any_of(link.child_links.begin(), link.child_links.end(), [](const auto& child) {
+    return (is_movable(*child->parent_joint) && OtherJointCollector::carries_shapes(*child)) ||
+           has_joint_behind(*child);
+  });
+}
+
 constexpr const char* kHint = "give its position in robot.joint_positions";
 
 }  // namespace
@@ -81,6 +88,16 @@ bool OtherJointCollector::follows_another(const urdf::Joint& joint) const {
                       [&](const KDL::Segment& segment) { return segment.getJoint().getName() == master->name; });
 }
 
+/// One remark names a joint and all behind it that are at 0.
+void OtherJointCollector::report_assumed(const urdf::Joint& joint, int parent, double position) {
+  if (position == 0.0 && parent >= 0 && assumed_[static_cast<size_t>(parent)]) return;
+  const urdf::Link& link = *model_.getLink(joint.child_link_name);
+  const char* joints = position == 0.0 && has_joint_behind(link) ? "it and the joints behind it" : "it";
+  arm_.warnings.push_back(
+      fmt::format("joint '{}' is no part of the chain: the links behind it ({}) count as if {} were at {:g}; {}",
+                  joint.name, links_behind(link), joints, position, kHint));
+}
+
 std::optional<int> OtherJointCollector::add(const urdf::Joint& joint, const Mount& mount,
                                             const Eigen::Isometry3d& mount_from_joint, Direction direction) {
   const std::optional<double> position = position_of(joint);
@@ -103,11 +120,8 @@ std::optional<int> OtherJointCollector::add(const urdf::Joint& joint, const Moun
   const size_t index = arm_.other_joints.size();
   arm_.other_positions.position[index] = position.value_or(nearest_to_zero(joint));
   arm_.other_joints.push_back(other);
-  if (!position && !follows_another(joint))
-    arm_.warnings.push_back(fmt::format(
-        "joint '{}' is no part of the chain: the links behind it ({}) count as if it "
-        "were at {:g}; {}",
-        joint.name, links_behind(*model_.getLink(joint.child_link_name)), arm_.other_positions.position[index], kHint));
+  assumed_.push_back(!position);
+  if (!position && !follows_another(joint)) report_assumed(joint, other.parent, arm_.other_positions.position[index]);
   return static_cast<int>(index);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "firmware/model/load/link_shapes.h"
 
@@ -41,12 +42,14 @@ class OtherJointCollector {
  private:
   std::optional<double> position_of(const urdf::Joint& joint, int depth = 0) const;
   bool follows_another(const urdf::Joint& joint) const;
+  void report_assumed(const urdf::Joint& joint, int parent, double position);
   void resolve_mimic(OtherJoint& joint);
 
   const std::string& file_;
   const urdf::ModelInterface& model_;
   const JointPositions& positions_;
   Arm& arm_;
+  std::vector<bool> assumed_;  ///< of each joint: nobody gave its position
 };
 
 }  // namespace sidestep

@@ -18,12 +18,15 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uint64_t kVersion = 6;  // raise it whenever the result changes
+constexpr std::uint64_t kVersion = 7;  // raise it whenever the result changes
 constexpr int kSamples = 5000;
 constexpr double kTouchingShare = 0.5;  // of the samples; two links that touch in more overlap by construction
 constexpr double kForbiddenShare = 0.015;
 // Pieces of meshes also touch in about 1 % of the samples in which the meshes do not.
 constexpr double kForbiddenShareOfPieces = 0.012;
+// Of the samples without contact; two links that are near in more are so by construction, as a UR's base and upper arm.
+// No configuration keeps them apart by the clearance, so they are kept from coming nearer than in any sample.
+constexpr double kNearShare = 0.9;
 constexpr double kLeastClearance_m = 0.001;
 
 bool neighbours(const Arm& arm, int a, int b) {
@@ -94,7 +97,7 @@ LinkPair links_of(const Arm& arm, const SampledPair& pair) {
 /// The samples in which no pair touches.
 class FreeSamples {
  public:
-  FreeSamples(const std::vector<SampledPair>& pairs, double clearance_m)
+  FreeSamples(const Arm& arm, const std::vector<SampledPair>& pairs, double clearance_m)
       : pairs_(pairs), clearance_m_(clearance_m), is_free_(kSamples, true) {
     for (const SampledPair& pair : pairs)
       for (const auto& [sample, distance_m] : pair.near_m)
@@ -106,6 +109,20 @@ class FreeSamples {
         if (is_free_[static_cast<size_t>(sample)]) sorted.push_back(distance_m);
       std::sort(sorted.begin(), sorted.end());
     }
+    std::map<LinkPair, std::map<int, double>> near_m;  // the two links, and their distance in a sample
+    for (const SampledPair& pair : pairs)
+      for (const auto& [sample, distance_m] : pair.near_m)
+        if (is_free_[static_cast<size_t>(sample)]) {
+          const auto [found, is_new] = near_m[links_of(arm, pair)].try_emplace(sample, distance_m);
+          if (!is_new) found->second = std::min(found->second, distance_m);
+        }
+    for (const SampledPair& pair : pairs) {
+      const std::map<int, double>& links_m = near_m[links_of(arm, pair)];
+      double least_m = HUGE_VAL;
+      if (static_cast<double>(links_m.size()) > kNearShare * static_cast<double>(count_))
+        for (const auto& [sample, distance_m] : links_m) least_m = std::min(least_m, distance_m);
+      most_m_.push_back(least_m);
+    }
   }
   /// Of every pair, with a quantile from 0 to 1.
   std::vector<double> clearances_m(double quantile) const {
@@ -115,7 +132,8 @@ class FreeSamples {
         const auto index = static_cast<size_t>(share * static_cast<double>(std::max<std::ptrdiff_t>(count_ - 1, 0)));
         return index < sorted.size() ? sorted[index] : clearance_m_;
       };
-      clearances.push_back(std::max(at(quantile), std::min(kLeastClearance_m, 0.5 * at(0.5))));
+      const double sampled_m = std::min(at(quantile), most_m_[clearances.size()]);
+      clearances.push_back(std::max(sampled_m, std::min(kLeastClearance_m, 0.5 * at(0.5))));
     }
     return clearances;
   }
@@ -138,6 +156,7 @@ class FreeSamples {
   const double clearance_m_;
   std::vector<bool> is_free_;
   std::ptrdiff_t count_ = 0;
+  std::vector<double> most_m_;  ///< of each pair: the least distance of two links that are near by construction
   std::vector<std::vector<double>> sorted_m_;  ///< of each pair, over the free samples, those below clearance_m_
 };
 
@@ -166,7 +185,7 @@ SelfPairs compute(const Arm& arm, double clearance_m, const std::vector<LinkPair
   const bool has_pieces =
       std::any_of(arm.shapes.begin(), arm.shapes.end(), [](const LinkShape& s) { return s.polyhedron != nullptr; });
   const double most_share = has_pieces ? kForbiddenShareOfPieces : kForbiddenShare;
-  const FreeSamples free(pairs, clearance_m);
+  const FreeSamples free(arm, pairs, clearance_m);
   double low = 0.0, high = 1.0;
   if (free.forbidden_share(free.clearances_m(high)) <= most_share) low = high;
   for (int i = 0; i < 20 && low < high; ++i) {
@@ -200,9 +219,9 @@ std::uint64_t hash_of(const Arm& arm, double clearance_m, const std::vector<Link
     const double prismatic = arm.prismatic[static_cast<size_t>(i) - 1];
     add(&prismatic, 1);
   }
-  for (size_t j = 0; j < arm.other_joints.size(); ++j) {
-    add(arm.other_frames.rotation[j].data(), 9);
-    add(arm.other_frames.origin[j].data(), 3);
+  for (const OtherFrame& frame : arm.other_frames.joints) {
+    add(frame.rotation.data(), 9);
+    add(frame.origin.data(), 3);
   }
   for (const LinkShape& shape : arm.shapes) {
     add_text(shape.link);

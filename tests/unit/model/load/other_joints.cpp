@@ -11,6 +11,7 @@
 #include "firmware/model/load/load_arm.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep;
 using test::Random;
@@ -161,6 +162,35 @@ void a_joint_without_a_position_is_named_and_nothing_is_silently_absent(void**) 
   assert_true(has_link(arm, "left_finger") && has_link(arm, "right_finger") && has_link(arm, "platform"));
 }
 
+/// A finger of so many joints in a row on the tool.
+Arm with_finger(int joints) {
+  std::string finger, parent = "tool";
+  for (int i = 0; i < joints; ++i) {
+    const std::string name = "phalanx_" + std::to_string(i);
+    finger += "<link name='" + name + "'><collision><geometry><sphere radius='0.01'/></geometry></collision></link>" +
+              "<joint name='of_" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" + name +
+              "'/><origin xyz='0 0 0.01'/><axis xyz='1 0 0'/><limit lower='0' upper='1' velocity='1' effort='1'/>" +
+              "</joint>";
+    parent = name;
+  }
+  const std::string text = test::replaced(test::text_of(kUrdf), "</robot>", finger + "</robot>");
+  return load_arm(test::scratch_file("finger.urdf", text), "mast", "tool", {}, kPositions);
+}
+
+void a_hand_of_forty_joints_is_there_and_named_once(void**) {
+  const Arm arm = with_finger(40);
+  assert_true(has_link(arm, "phalanx_39"));
+  check(arm.warnings.size() == 1 && arm.warnings[0].find("it and the joints behind it") != std::string::npos, "%s",
+        arm.warnings[0].c_str());
+}
+
+void too_many_other_joints_are_refused(void**) {
+  const int others = static_cast<int>(on_the_mast().other_joints.size());
+  assert_int_equal(with_finger(kMaxOtherJoints - others).other_joints.size(), kMaxOtherJoints);
+  const std::string message = test::message_of([&] { with_finger(kMaxOtherJoints - others + 1); });
+  assert_true(test::one_line_with(message, {"finger.urdf", std::to_string(kMaxOtherJoints)}));
+}
+
 /// The base link is a link of the chain. 0 is not within the limits of left_2.
 void joints_on_the_base_link_count_as_at_zero_or_the_nearest_limit(void**) {
   const Arm arm = on_the_mast({});
@@ -171,6 +201,7 @@ void joints_on_the_base_link_count_as_at_zero_or_the_nearest_limit(void**) {
                        [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
   };
   assert_true(says("'head_joint' is no part of the chain: the links behind it ('head') count as if it were at 0"));
+  assert_true(says("('left_upper', 'left_lower') count as if it and the joints behind it were at 0"));
   assert_true(says("'left_2' is no part of the chain: the links behind it ('left_lower') count as if it were at -0.1"));
 }
 
@@ -222,6 +253,8 @@ int main() {
       cmocka_unit_test(a_branch_is_there_up_to_the_first_joint_without_a_position),
       cmocka_unit_test(what_is_below_a_lift_without_a_position_is_named),
       cmocka_unit_test(joints_on_the_base_link_count_as_at_zero_or_the_nearest_limit),
+      cmocka_unit_test(a_hand_of_forty_joints_is_there_and_named_once),
+      cmocka_unit_test(too_many_other_joints_are_refused),
       cmocka_unit_test(a_position_that_no_other_joint_can_have_is_refused),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

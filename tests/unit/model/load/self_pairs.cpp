@@ -92,6 +92,38 @@ void few_free_configurations_are_forbidden_also_where_links_are_near_by_construc
   }
 }
 
+/// Of the first and the last link, which are 12 to 18 mm apart in every configuration, as some links of a UR: no
+/// threshold would keep them 20 mm apart.
+Arm with_links_near_by_construction() {
+  std::string links, joints;
+  const char* const shapes[7] = {
+      "<geometry><sphere radius='0.05'/></geometry>",
+      "<origin xyz='0 0 -0.3'/><geometry><sphere radius='0.01'/></geometry>",
+      "",
+      "",
+      "",
+      "",
+      "<origin xyz='0.003 0 0'/><geometry><sphere radius='0.05'/></geometry>",
+  };
+  for (int i = 0; i < 7; ++i) {
+    const std::string name = "l" + std::to_string(i), shape = shapes[i];
+    links += "<link name='" + name + "'>" + (shape.empty() ? "" : "<collision>" + shape + "</collision>") + "</link>";
+    if (i == 0) continue;
+    joints += "<joint name='j" + std::to_string(i) + "' type='revolute'><parent link='l" + std::to_string(i - 1) +
+              "'/><child link='" + name + "'/><axis xyz='0 0 1'/><origin xyz='" + (i == 6 ? "0.115" : "0") +
+              " 0 0'/><limit lower='-3' upper='3' velocity='1' effort='1'/></joint>";
+  }
+  return load_arm(test::scratch_file("near.urdf", "<robot name='near'>" + links + joints + "</robot>"), "l0", "l6");
+}
+
+void links_that_no_configuration_keeps_apart_forbid_next_to_nothing(void**) {
+  const Arm arm = with_links_near_by_construction();
+  const SelfPairs pairs = find_self_pairs(arm, 0.02);
+  assert_true(names(arm, pairs.kept) == std::vector<std::string>({"l0 l6"}));
+  check_near(pairs.kept[0].clearance_m, 0.012, 5e-5);
+  check(forbidden_share(arm, pairs) < 0.002, "%g", forbidden_share(arm, pairs));
+}
+
 /// The pieces alone forbid what they exceed their mesh.
 void clearances_forbid_less_where_pieces_stand_for_meshes(void**) {
   Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
@@ -193,6 +225,7 @@ int main() {
       cmocka_unit_test(the_lwa3_has_three_pairs_that_can_meet),
       cmocka_unit_test(the_pairs_are_the_same_on_every_call),
       cmocka_unit_test(few_free_configurations_are_forbidden_also_where_links_are_near_by_construction),
+      cmocka_unit_test(links_that_no_configuration_keeps_apart_forbid_next_to_nothing),
       cmocka_unit_test(the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one),
       cmocka_unit_test(clearances_forbid_less_where_pieces_stand_for_meshes),
       cmocka_unit_test(the_pair_that_forbids_most_is_named),
