@@ -146,28 +146,40 @@ void check_tracking_continues(LiveScene& scene, const char* what) {
   check(share_of(Status::TRACK, scene.arm, first) > 0.5, "%s: %s", what, after.message.c_str());
 }
 
+/// The flood fills the receive buffer of the test as well. On a busy machine the test may lose so many commands that it
+/// cannot check them; then it repeats the flood.
+void check_in_flood(const char* what, const std::function<void(test::LcmPeer&, int64_t)>& send, bool of_obstacles,
+                    double least_rejected_share) {
+  bool complete = false;
+  for (int attempt = 0; attempt < 6 && !complete; ++attempt) {
+    LiveScene scene("sidestep");
+    scene.arm.sends_obstacles = !of_obstacles;
+    flood = std::make_unique<Flood>(send);
+    const int64_t rejected = scene.arm.status().rejected_messages, sent = flood->sent();
+    check_tracking_continues(scene, what);
+    const auto counted = static_cast<double>(scene.arm.status().rejected_messages - rejected);
+    check(counted >= least_rejected_share * static_cast<double>(flood->sent() - sent), "%g counted", counted);
+    check(scene.arm.commands.violation().empty(), "%s", scene.arm.commands.violation().c_str());
+    complete = test::lost_few(scene.arm);
+    end_all(nullptr);
+  }
+  check(complete, "%s: too many commands were lost for a check", what);
+}
+
 void a_flood_of_valid_messages_leaves_the_newest_in_use(void**) {
-  LiveScene scene("sidestep");
-  scene.arm.sends_obstacles = false;
-  flood = std::make_unique<Flood>([](test::LcmPeer& peer, int64_t n) {
+  const auto send = [](test::LcmPeer& peer, int64_t n) {
     peer.send("OBSTACLES",
               test::obstacles_message(n, {test::sphere(5, Vector3(0.9, 0.6, 0.6), 0.05, Vector3::Zero())}));
-  });
-  check_tracking_continues(scene, "valid");
-  check_stream(scene.arm);
+  };
+  check_in_flood("valid", send, true, 0.0);
 }
 
 void a_flood_of_invalid_messages_is_counted(void**) {
-  LiveScene scene("sidestep");
-  flood = std::make_unique<Flood>([bytes = Bytes(80, 3)](test::LcmPeer& peer, int64_t n) mutable {
+  const auto send = [bytes = Bytes(80, 3)](test::LcmPeer& peer, int64_t n) mutable {
     bytes[static_cast<size_t>(n % 80)] ^= static_cast<uint8_t>(n);
     peer.send_bytes(n % 2 ? "TARGET" : "ARM_STATE", bytes);
-  });
-  const int64_t rejected = scene.arm.status().rejected_messages, sent = flood->sent();
-  check_tracking_continues(scene, "invalid");
-  const auto counted = static_cast<double>(scene.arm.status().rejected_messages - rejected);
-  check(counted > 0.3 * static_cast<double>(flood->sent() - sent), "%g counted", counted);
-  check_stream(scene.arm);
+  };
+  check_in_flood("invalid", send, false, 0.3);
 }
 
 /// The age of a message follows from its time of receipt, not from its utime.

@@ -9,6 +9,9 @@ namespace sidestep::test {
 /// arguments.
 Process start_controller(const std::string& law, std::vector<std::string> before = {});
 
+/// Whether at most 5 % of the commands were lost.
+bool lost_few(const LiveArm& arm);
+
 /// Fails the test if the arm could not have followed one of the commands, or if more than 5 % of them were lost.
 void check_stream(const LiveArm& arm);
 
