@@ -81,7 +81,6 @@ WIRE     := $(BUILD)/lcm/.made
 # Makes the Python types a package: pip install build/lcm/python.
 PYPROJECT := $(BUILD)/lcm/python/pyproject.toml
 READY    := $(BUILD)/.ready
-VIEW     := $(READY).view $(BUILD)/.python-view
 TESTED   := $(READY).test $(BUILD)/.python-view
 # Where the Python package example-robot-data has its URDFs.
 ROBOTS    = $(BUILD)/venv/lib/python3*/site-packages/cmeel.prefix/share/example-robot-data/robots
@@ -158,13 +157,13 @@ install-test: all $(SHARED) $(READY).test $(READY).deb $(READY).install ## test 
 
 ##@ Viewing
 
-view: all $(VIEW) ## play SCENARIO live in the browser on PORT (7000), repeated until Ctrl-C
+view: all $(BUILD)/.python-view ## play SCENARIO live in the browser on PORT (7000), repeated until Ctrl-C
 	@$(PYTHON) host/view/show.py host/scenarios/$(SCENARIO).yaml --port $(PORT)
 
-play: all $(VIEW) ## show an arm without target and obstacles, and the commands that send them
+play: all $(BUILD)/.python-view ## show an arm without target and obstacles, and the commands that send them
 	@$(PYTHON) host/view/show.py host/scenarios/play.yaml --port $(PORT)
 
-view-test: all $(VIEW) ## check screenshots of the view and of a report in headless Chromium, in build/figures
+view-test: all $(READY).view-test $(BUILD)/.python-view ## check screenshots of the view and of a report in headless Chromium, in build/figures
 	@$(PYTHON) tests/view/picture.py
 	@$(PYTHON) tests/view/report_picture.py
 

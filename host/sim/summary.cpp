@@ -26,14 +26,19 @@ void at_least(std::vector<std::string>& broken, const char* name, const std::opt
     broken.push_back(fmt::format("{}: wanted at least {}, got {:.6g}", name, *bound, value));
 }
 
+/// Ids from -2 downwards are those of the surroundings of the controller's configuration.
+std::string name_of(int id) {
+  return id <= -2 ? fmt::format("surroundings[{}]", -2 - id) : fmt::format("obstacle {}", id);
+}
+
 }  // namespace
 
 void Summary::add(const Row& row) {
   if (rows_++ == 0) skipped_before_ = row.status.skipped_cycles;
   if (row.nearest.clearance_m < clearance_m_) {
     clearance_m_ = row.nearest.clearance_m;
-    nearest_ = fmt::format("{} and obstacle {} at {:.2f} s", row.nearest.link,
-                           row.world.all()[static_cast<size_t>(row.nearest.obstacle)].id, row.t_s);
+    nearest_ = fmt::format("{} and {} at {:.2f} s", row.nearest.link,
+                           name_of(row.world.all()[static_cast<size_t>(row.nearest.obstacle)].id), row.t_s);
   }
   neighbour_m_ = std::min(neighbour_m_, row.neighbour_m);
   if (row.nearest_links.clearance_m < self_m_) {

@@ -120,7 +120,7 @@ def guided_sentence(done):
     shares = {name: np.mean(done[name, "sidestep"][0].columns["foresight"] == 1) for name in EXAMPLES}
     guided = [f"{share * 100:.0f} % of the time in `{name}`" for name, share in shares.items() if share > 0]
     listed = " and ".join([", ".join(guided[:-1]), guided[-1]] if guided[1:] else guided)
-    return f"Foresight guides the arm for {listed}, and never in the other scenes."
+    return f"Foresight guides the arm for {listed}, and never in the other scenes of this table."
 
 
 def two_arms_table(done):

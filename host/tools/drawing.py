@@ -215,7 +215,7 @@ def draw_scene(painter, run, moment):
     colour, row = LAW_COLOURS[run.law], outcome.drawn_row(run)
     if painter.view is OBLIQUE:
         draw_floor(painter, run)
-        painter.axes.text(0.0, 0.0, f"grid at the height of the base: {SQUARE_M:g} m",
+        painter.axes.text(0.0, 0.0, f"grid of {SQUARE_M:g} m squares at the height of the base",
                           transform=painter.axes.transAxes, color="0.35", fontsize=9)
         painter.axes.set_axis_off()
     draw_surroundings(painter, run)

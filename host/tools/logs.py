@@ -84,6 +84,8 @@ def run_of(file, arms, one, config):
         if state.num_joints == one.joints:
             rows.append([t_s, *(getattr(status, field) for field in FIELDS), silent, *state.joint_position,
                          *state.joint_velocity])
+    if not rows and next(iter(lcm.EventLog(str(file))), None) is None:
+        raise NoRun(f"{file}: not an LCM log, or an empty one")
     if not rows:
         raise NoRun(f"{file}: no CONTROLLER_STATUS after an ARM_STATE of {one.joints} joints")
     joints = range(1, one.joints + 1)

@@ -1,10 +1,9 @@
 """Colours and common parts of the figures."""
-import math
-
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 
 # The palette of Okabe and Ito, which stays distinguishable with every kind of colour vision.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PINK = ("#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2",
@@ -22,12 +21,20 @@ plt.rcParams.update({"font.size": 9.5, "axes.titlesize": 11, "axes.titlelocation
                      "legend.frameon": False, "legend.fontsize": 9, "savefig.dpi": 150, "lines.linewidth": 1.6})
 
 
+def legend_rows(labels, columns):
+    """Lines of text in the longest column of a legend, which matplotlib fills column by column."""
+    if not labels or not columns:
+        return 0
+    heights, shares = [label.count("\n") + 1 for label in labels], divmod(len(labels), columns)
+    ends = np.cumsum([shares[0] + (column < shares[1]) for column in range(columns)])
+    return max(sum(heights[start:end]) for start, end in zip([0, *ends], ends))
+
+
 def finish(axes, title, legend_columns=3, **settings):
     """Title and legend above the panel, where they cover no curve. legend_columns: 0 for no legend."""
     axes.set(**settings)
     labels = axes.get_legend_handles_labels()[1]
-    lines = len(labels) + sum(label.count("\n") for label in labels)
-    rows = math.ceil(lines / legend_columns) if legend_columns else 0
+    rows = legend_rows(labels, legend_columns)
     if rows:
         axes.legend(ncol=legend_columns, loc="lower left", bbox_to_anchor=(-0.01, 1.0), borderaxespad=0.1,
                     columnspacing=1.2, handlelength=1.6, labelspacing=0.3)

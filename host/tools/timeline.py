@@ -106,11 +106,12 @@ def plot_cycle_time(axes, run, period_s):
     times_us = run.columns["cycle_time_s"] * 1e6
     longest_us = max(times_us[np.isfinite(times_us)], default=0.0)
     axes.plot(run.columns["t_s"], times_us, color=BLUE, linewidth=1, label=f"longest: {longest_us:.0f} us")
-    if period_s > 0:
-        if longest_us > 0.3e6 * period_s:
-            axes.axhline(period_s * 1e6, **DASHED)
-        axes.plot([], [], **DASHED, label=f"period: {period_s * 1e6:.0f} us")
-    plots.finish(axes, "CPU time of a whole cycle", 2, ylabel="time, us", ylim=(0, None))
+    title = "CPU time of a whole cycle"
+    if longest_us > 0.3e6 * period_s > 0:
+        axes.axhline(period_s * 1e6, **DASHED, label=f"period: {period_s * 1e6:.0f} us")
+    elif period_s > 0:
+        title += f" (period: {period_s * 1e6:.0f} us)"
+    plots.finish(axes, title, 2, ylabel="time, us", ylim=(0, None))
 
 
 def plot_joints(axes, run, pattern, label, title, limits):
@@ -158,7 +159,7 @@ def draw(run, limits):
     for axes in panels[1:]:
         plots.mark_foresight(axes, run)
         mark_faults(axes, run)
-    panels[-1].set_xlabel("time, s")
+    panels[-1].set_xlabel("time since the first status of the controller, s")
     panels[0].set_xlim(run.columns["t_s"][0], run.columns["t_s"][-1])
     file = io.BytesIO()
     figure.savefig(file, format="svg", metadata={"Date": None})

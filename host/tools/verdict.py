@@ -58,7 +58,9 @@ def rows(run, log):
     known = (record or run).columns
     clearance_m = plots.clearance(record) if record else known["clearance_m"]
     touches = contact(record) if record else "yes" if (clearance_m < 0).any() else "no"
+    links = ([("least distance between links", least(known["t_s"], known["self_clearance_m"]))]
+             if np.isfinite(known.get("self_clearance_m", np.nan)).any() else [])
     return [("expectations of the scenario", file.read_text() if file.is_file() else "not known"),
             ("faults", faults(run)), ("contact", touches), ("least clearance", least(known["t_s"], clearance_m)),
-            ("distance to the target at the end", at_the_end(known["target_distance_m"])),
+            *links, ("distance to the target at the end", at_the_end(known["target_distance_m"])),
             ("measured by", "the simulator" if record else "the controller, which knows only what it receives")]

@@ -64,7 +64,9 @@ def goal_text(ages_s):
 
 
 def clearance_text(status, ages_s):
-    if ages_s.get("OBSTACLES", 0.0) > OLD_OBSTACLES_S or "obstacles are too old" in status.message:
+    # A viewer that is late itself receives both late.
+    older_s = ages_s.get("OBSTACLES", 0.0) - ages_s.get("CONTROLLER_STATUS", 0.0)
+    if older_s > OLD_OBSTACLES_S or "obstacles are too old" in status.message:
         return "unknown, the obstacles are too old"
     if math.isnan(status.clearance):
         return "unknown, no obstacles received yet"

@@ -4,6 +4,7 @@ import numpy as np
 import outcome
 from runs import LAWS
 
+SHORTEST_STAY_S = 0.1  # at the target
 APPROACHING_M, LAST_S = 0.001, 1.0  # a tool that came so much nearer in the last time is still approaching
 
 
@@ -38,8 +39,9 @@ def missing(run):
     """How far the tool is from its target at the end, and what it was before."""
     t, distance_m = run.columns["t_s"], run.columns["target_distance_m"]
     text = f"{length(distance_m[-1]).replace('below', 'less than')} from the target at the end"
-    if not outcome.arrives(run) and outcome.at_target(run):
-        return f"at the target until {outcome.at_target(run)[-1][1]:.2f} s, {text}"
+    stays = [end_s for start_s, end_s in outcome.at_target(run) if end_s - start_s >= SHORTEST_STAY_S]
+    if not outcome.arrives(run) and stays:
+        return f"at the target until {stays[-1]:.2f} s, {text}"
     before_m = distance_m[np.searchsorted(t, t[-1] - LAST_S)]
     return text + ", still approaching" * (not outcome.arrives(run) and bool(before_m - distance_m[-1] > APPROACHING_M))
 

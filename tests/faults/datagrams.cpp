@@ -27,16 +27,17 @@ long status_of(const test::Process& process, const std::string& name) {
   return -1;
 }
 
-/// The share of TRACK from status `first` on. Cycles in which the arm states are late do not count: on a busy machine
-/// the test itself sends them late.
+/// The share of TRACK from status `first` on. Cycles that do not track because the arm states are late do not count: on
+/// a busy machine the test itself sends them late.
 double tracking(const LiveScene& scene, size_t first) {
-  const auto& all = scene.arm.peer.statuses;
-  std::vector<Status> statuses;
-  std::copy_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), std::back_inserter(statuses),
-               [](const Status& status) { return status.message.find("arm state") == std::string::npos; });
-  const auto count = std::count_if(statuses.begin(), statuses.end(),
-                                   [](const Status& status) { return status.mode == Status::TRACK; });
-  return static_cast<double>(count) / static_cast<double>(statuses.size());
+  const auto& statuses = scene.arm.peer.statuses;
+  double tracked = 0.0, other = 0.0;
+  for (size_t i = first; i < statuses.size(); ++i)
+    if (statuses[i].mode == Status::TRACK)
+      ++tracked;
+    else if (statuses[i].message.find("arm state") == std::string::npos)
+      ++other;
+  return tracked / (tracked + other);
 }
 
 /// A process that receives with liblcm 1.3.1 is ended by the first two and allocates what the third claims. (So may

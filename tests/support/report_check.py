@@ -107,7 +107,7 @@ def faults_on_page():
     run = runs.Run("", "", {"config": arm.CONFIG}, columns, runs.HELD)
     limits = np.array([[-1.0, 1.0], [-np.inf, np.inf]])
     drawn = timeline.draw(run, (limits, limits)).svg.decode()
-    for word in ("TRACK", "FAULT", "guided", "arm state lost", "period: 10000 us"):
+    for word in ("TRACK", "FAULT", "guided", "arm state lost", "CPU time of a whole cycle (period: 10000 us)"):
         assert f"<!-- {word} -->" in drawn, word
     assert "<!-- BRAKE -->" not in drawn
     assert "obstacles silent" not in drawn and "nothing logged" not in drawn

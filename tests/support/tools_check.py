@@ -403,6 +403,8 @@ def watched_texts():
     for clearance_m, text in ((0.1234, "0.123 m"), (math.inf, "no obstacles"), (math.nan, "unknown, no obstacles")):
         status.clearance = clearance_m
         assert watch.clearance_text(status, {}).startswith(text)
+    status.clearance = 0.1234
+    assert watch.clearance_text(status, {"CONTROLLER_STATUS": 0.3, "OBSTACLES": 0.33}) == "0.123 m"  # a late viewer
     for ages, text in (({}, "none received"), ({"TARGET": 0.1, "ARM_STATE": 0.0}, "of the tool"),
                        ({"TARGET": 0.3, "JOINT_TARGET": 0.1}, "a posture")):
         assert watch.goal_text(ages) == text and f"target: {text}" in "\n".join(watch.lines(latest, ages))

@@ -94,7 +94,7 @@ void surroundings_and_other_arms_count_in_the_clearance(void**) {
   assert_true(row.nearest.clearance_m < 0.0);
   Summary summary(10'000);
   summary.add(row);
-  check(summary.text({}).find("obstacle -2") != std::string::npos, "%s", summary.text({}).c_str());
+  check(summary.text({}).find("surroundings[0]") != std::string::npos, "%s", summary.text({}).c_str());
 
   row.world.surroundings.clear();
   row.neighbour_m = -0.01;
@@ -261,6 +261,10 @@ void the_summary_names_the_closest_pair(void**) {
   for (const char* part : {"a title", "YES", "-0.0100 m", "forearm and obstacle 42 at 0.50 s", "(paper: 0.2154 m)"}) {
     check(text.find(part) != std::string::npos, "no '%s' in: %s", part, text.c_str());
   }
+  Row nearer = row_at(0.7, -0.02);
+  nearer.world.obstacles[1].id = -3;
+  summary.add(nearer);
+  assert_true(summary.text(scenario).find("forearm and surroundings[1] at 0.70 s") != std::string::npos);
 }
 
 }  // namespace
