@@ -33,13 +33,6 @@ std::string links_behind(const urdf::Link& link) {
   return names;
 }
 
-bool has_joint_behind(const urdf::Link& link) {
-  return std::any_of(link.child_links.begin(), link.child_links.end(), [](const auto& child) {
-    return (is_movable(*child->parent_joint) && OtherJointCollector::carries_shapes(*child)) ||
-           has_joint_behind(*child);
-  });
-}
-
 constexpr const char* kHint = "give its position in robot.joint_positions";
 
 }  // namespace
@@ -88,11 +81,20 @@ bool OtherJointCollector::follows_another(const urdf::Joint& joint) const {
                       [&](const KDL::Segment& segment) { return segment.getJoint().getName() == master->name; });
 }
 
-/// One remark names a joint and all behind it that are at 0.
+/// Whether a joint behind this link counts as at 0 because nobody gave its position.
+bool OtherJointCollector::assumes_zero_behind(const urdf::Link& link) const {
+  return std::any_of(link.child_links.begin(), link.child_links.end(), [this](const auto& child) {
+    const urdf::Joint& joint = *child->parent_joint;
+    return carries_shapes(*child) &&
+           ((is_movable(joint) && !position_of(joint) && nearest_to_zero(joint) == 0.0) || assumes_zero_behind(*child));
+  });
+}
+
+/// One remark covers a joint and those behind it that count as at 0, too.
 void OtherJointCollector::report_assumed(const urdf::Joint& joint, int parent, double position) {
   if (position == 0.0 && parent >= 0 && assumed_[static_cast<size_t>(parent)]) return;
   const urdf::Link& link = *model_.getLink(joint.child_link_name);
-  const char* joints = position == 0.0 && has_joint_behind(link) ? "it and the joints behind it" : "it";
+  const char* joints = position == 0.0 && assumes_zero_behind(link) ? "it and the joints behind it" : "it";
   arm_.warnings.push_back(
       fmt::format("joint '{}' is no part of the chain: the links behind it ({}) count as if {} were at {:g}; {}",
                   joint.name, links_behind(link), joints, position, kHint));

@@ -42,6 +42,7 @@ class OtherJointCollector {
  private:
   std::optional<double> position_of(const urdf::Joint& joint, int depth = 0) const;
   bool follows_another(const urdf::Joint& joint) const;
+  bool assumes_zero_behind(const urdf::Link& link) const;
   void report_assumed(const urdf::Joint& joint, int parent, double position);
   void resolve_mimic(OtherJoint& joint);
 

@@ -201,7 +201,7 @@ void joints_on_the_base_link_count_as_at_zero_or_the_nearest_limit(void**) {
                        [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
   };
   assert_true(says("'head_joint' is no part of the chain: the links behind it ('head') count as if it were at 0"));
-  assert_true(says("('left_upper', 'left_lower') count as if it and the joints behind it were at 0"));
+  assert_true(says("('left_upper', 'left_lower') count as if it were at 0"));
   assert_true(says("'left_2' is no part of the chain: the links behind it ('left_lower') count as if it were at -0.1"));
 }
 
