@@ -168,6 +168,7 @@ view-test: all $(READY).view-test $(BUILD)/.python-view ## check screenshots of 
 	@$(PYTHON) tests/view/report_picture.py
 
 spy: $(BUILD)/types.jar ## start lcm-spy, which decodes the message types
+	@test -n "$$DISPLAY" || { echo "lcm-spy needs a display, DISPLAY is not set; without one: host/tools/watch.py"; exit 2; }
 	@java -cp $(SPY):$< lcm.spy.Spy
 
 report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)

@@ -27,8 +27,10 @@ void at_least(std::vector<std::string>& broken, const char* name, const std::opt
 }
 
 /// Ids from -2 downwards are those of the surroundings of the controller's configuration.
-std::string name_of(int id) {
-  return id <= -2 ? fmt::format("surroundings[{}]", -2 - id) : fmt::format("obstacle {}", id);
+std::string name_of(const Obstacle& obstacle) {
+  if (obstacle.id <= -2) return fmt::format("surroundings[{}]", -2 - obstacle.id);
+  const std::string number = fmt::format("obstacle {}", obstacle.id);
+  return obstacle.name.empty() ? number : fmt::format("{} ({})", obstacle.name, number);
 }
 
 }  // namespace
@@ -38,7 +40,7 @@ void Summary::add(const Row& row) {
   if (row.nearest.clearance_m < clearance_m_) {
     clearance_m_ = row.nearest.clearance_m;
     nearest_ = fmt::format("{} and {} at {:.2f} s", row.nearest.link,
-                           name_of(row.world.all()[static_cast<size_t>(row.nearest.obstacle)].id), row.t_s);
+                           name_of(row.world.all()[static_cast<size_t>(row.nearest.obstacle)]), row.t_s);
   }
   neighbour_m_ = std::min(neighbour_m_, row.neighbour_m);
   if (row.nearest_links.clearance_m < self_m_) {

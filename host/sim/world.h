@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "host/people/capsule_path.h"
@@ -34,6 +35,7 @@ struct Obstacle {
   Solid solid;
   Motion motion;
   bool is_person = false;
+  std::string name{};  ///< of the scenario; empty: none
 };
 
 /// The goal of the tool, or of all joints.

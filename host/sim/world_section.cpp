@@ -169,8 +169,7 @@ std::vector<Obstacle> read_obstacles(YamlSection& scenario) {
     std::string kind = "thing";
     section.choice("kind", kind, {"thing", "person"});
     obstacle.is_person = kind == "person";
-    std::string name;
-    section.text("name", name);  // only the figures use it
+    section.text("name", obstacle.name);
     section.finish();
     obstacles.push_back(obstacle);
   }

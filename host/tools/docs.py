@@ -28,6 +28,7 @@ PICTURES = {runs.ROOT / "host/scenarios/closing-gap.gif": ("closing-gap", animat
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
             "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
+            "home-from-under-table": " (Franka Panda)",
             "shelf-with-a-visitor": " (Franka Panda)", "fetch": " (Franka Panda)", "kitchen": " (Franka Panda)"}
 PLANNED = "planned"  # the paper's law with the other reading of its tool velocity
 BLOCK = re.compile(r"(<!-- make docs: ([\w-]+) -->\n)(.*?)(<!-- end -->)", re.S)

@@ -4,7 +4,7 @@ import numpy as np
 RINGS_PT = (16, 26, 38, 52, 70)  # how far a text may go from its point
 DIRECTIONS = np.array([[x, y] for y in (1, -1, 0) for x in (0, 1, -1) if x or y])
 NEAR_PT = 30    # a text nearer to its point needs no line to it
-MARGIN_PT = 2
+MARGIN_PT = 7     # between two texts, which else read as one
 
 
 class Labels:

@@ -61,7 +61,7 @@ def main():
                                                  for law in runs.LAWS])
     for both in zip(*laws):
         print(f"\n{both[0].scenario['title']}; both laws, in lockstep:\n{table(*both)}\n", flush=True)
-        print("figures: " + " ".join(map(runs.shown, plots.pages(both))))
+        print("figures of these two runs: " + " ".join(map(runs.shown, plots.pages(both))))
     return code
 
 

@@ -7,6 +7,7 @@ import drawing
 import outcome
 import solids
 import words
+from labels import Labels
 from outcome import closest, clearance
 from runs import FIGURES, LAWS, config_of, load
 from solids import FROM_ABOVE, OBLIQUE
@@ -28,8 +29,8 @@ def section(run, name):
 # Curves over time
 
 # Value of the column -> (name, look)
-FORESIGHT = {1: ("Sidestep follows a path that foresight has planned", dict(facecolor="0.92", edgecolor="none")),
-             2: ("Sidestep waits: foresight knows no path yet", dict(facecolor="0.92", edgecolor="0.6", hatch="///"))}
+FORESIGHT = {1: ("Sidestep follows a path that foresight has planned", dict(facecolor="0.93", edgecolor="none")),
+             2: ("Sidestep waits: foresight knows no path yet", dict(facecolor="0.78", edgecolor="none"))}
 
 
 def stretches(wanted):
@@ -145,18 +146,20 @@ def curves_of_clearance(run):
 
 def plot_clearances(axes, run):
     """Of one run: from surface to surface, for each obstacle, whose number stands at its least clearance."""
-    t, moment, known = run.columns["t_s"], closest(run), set()
+    t, moment, known, names = run.columns["t_s"], closest(run), set(), Labels()
     for label, text, colour, values_m in curves_of_clearance(run):
-        axes.plot(t, values_m, color=colour, label=None if label in known else label)
-        known.add(label)
         row = int(np.nanargmin(values_m)) if np.isfinite(values_m).any() else 0
+        seen = values_m[row] < FAR_M and label not in known
+        axes.plot(t, values_m, color=colour, label=label if seen else None)
+        known |= {label} if seen else set()
         if values_m[row] < 0.9 * FAR_M:
-            axes.annotate(text, (t[row], values_m[row]), (0, 6), textcoords="offset points", fontweight="bold",
-                          ha="center", zorder=6, path_effects=drawing.HALO)
+            names.add((t[row], values_m[row]), text, 1, fontweight="bold", path_effects=drawing.HALO,
+                      arrowprops=dict(arrowstyle="-", color="0.4", linewidth=0.7))
     mark_moment(axes, run, moment)
     mark_touching_links(axes, run)
     mark_changes(axes, run)
     finish_clearance(axes, run, float(clearance(run).min()), title_of_clearance(run), 1, outcome.has_resting(run))
+    names.place(axes)
 
 
 def mark_moment(axes, run, moment):

@@ -4,7 +4,7 @@ import time
 
 import watch
 import wire
-from scene import ARROW_S, BANDS, GUIDE, OBSTACLE, SURROUNDING, TARGET, TRAIL, UNKNOWN
+from scene import ARROW_S, BANDS, GUIDE, MOVING, RESTING, TARGET, TRAIL, UNKNOWN
 from stage import Layers
 
 STYLE = "<div style='font-size:0.85em;padding:0 1em'>"
@@ -17,8 +17,8 @@ def key():
     rows = [(colour, f"link, clearance {low} to {most_m:g} m") for low, (most_m, colour) in zip(bounds, BANDS[:-1])]
     rows += [(BANDS[-1][1], f"link, clearance above {bounds[-1]} m"),
              (UNKNOWN, "link, clearance unknown"),
-             (OBSTACLE, f"obstacle; arrow: {ARROW_S:g} s ahead; line: to the nearest link"),
-             (SURROUNDING, "surroundings"), (TARGET, "target"),
+             (MOVING, f"moving obstacle; arrow: {ARROW_S:g} s ahead; line: nearest to the arm"),
+             (RESTING, "obstacle at rest, surroundings"), (TARGET, "target"),
              (TRAIL, "path of the tool"), (GUIDE, "path that foresight has planned")]
     return STYLE + "".join(
         f"<div><span style='color:rgb{colour}'>&#9632;</span> {words}</div>" for colour, words in rows) + "</div>"
@@ -44,7 +44,7 @@ def words_of(status, ages_s, channel, waited_s):
 class Panel:
     def __init__(self, server, arms, layers):
         gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="small")
         gui.set_panel_label("Sidestep")
         self.texts = [gui.add_html("") for _ in arms]
         self.channels, self.start_s = [one.names["CONTROLLER_STATUS"] for one in arms], time.monotonic()

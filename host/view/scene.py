@@ -6,7 +6,8 @@ import arm
 from wire import obstacle_t
 
 BANDS = [(0.05, (217, 26, 26)), (0.1, (242, 128, 26)), (0.2, (230, 204, 26)), (np.inf, (51, 115, 217))]  # up to, m
-OBSTACLE, SURROUNDING = (178, 38, 166), (150, 150, 150)
+MOVING, RESTING = (178, 38, 166), (150, 150, 150)  # obstacles; surroundings rest
+MOVING_MPS = 0.01     # speed from which on an obstacle counts as moving
 UNKNOWN = (95, 95, 105)  # of a link whose clearance nobody knows
 TARGET, TRAIL, GUIDE = (13, 166, 76), (40, 40, 40), (0, 190, 190)
 CROSS_M = 0.12          # from the target to each end of its cross hair, which an arm at the target does not hide
@@ -75,7 +76,7 @@ class ArmNodes:
                                 line_width=4.0)
         self.trail, self.guide, self.nearest = (
             scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width, visible=False)
-            for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", OBSTACLE, 2.0)))
+            for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", MOVING, 2.0)))
 
     def add_shape(self, scene, name, shape):
         handle = add_mesh(scene, name, mesh_of(shape.kind, shape.size), visible=not self.visuals,
@@ -133,7 +134,7 @@ class ObstacleNodes:
     def __init__(self, scene):
         self.scene, self.nodes = scene, {}
         self.turns = {}  # id -> the orientation that was sent; sending it again would cost as much as a position
-        self.arrows = scene.add_arrows("/velocities", NO_LINES, OBSTACLE, shaft_radius=0.008, head_radius=0.02,
+        self.arrows = scene.add_arrows("/velocities", NO_LINES, MOVING, shaft_radius=0.008, head_radius=0.02,
                                        head_length=0.05, visible=False)
         self.shows_arrows = True
 
@@ -143,11 +144,12 @@ class ObstacleNodes:
         for obstacle in obstacles:
             handle = self.handle_of(obstacle, numbered=len(obstacles) <= MOST_NUMBERS)
             handle.position = obstacle.position
+            paint(handle, MOVING if moves(obstacle) else RESTING)
             turn = tuple(obstacle.quaternion)
             if obstacle.shape != obstacle_t.SPHERE and self.turns.get(obstacle.id) != turn:
                 handle.wxyz = self.turns[obstacle.id] = turn
-        moving = [obstacle for obstacle in obstacles if np.linalg.norm(obstacle.velocity) > 0.01]
-        set_lines(self.arrows, [arrow_of(obstacle) for obstacle in moving] if self.shows_arrows else NO_LINES)
+        set_lines(self.arrows, [arrow_of(obstacle) for obstacle in obstacles if moves(obstacle)]
+                  if self.shows_arrows else NO_LINES)
 
     def handle_of(self, obstacle, numbered):
         """The node of the obstacle, with its id as a label; a new one when its shape has changed."""
@@ -155,12 +157,15 @@ class ObstacleNodes:
         if self.nodes.get(obstacle.id, (None,))[0] != form:
             self.turns.pop(obstacle.id, None)
             mesh = mesh_of(OBSTACLE_KINDS[obstacle.shape], obstacle.size)
-            colour = SURROUNDING if obstacle.id < 0 else OBSTACLE
             name = f"/obstacles/{obstacle.id}"
-            self.nodes[obstacle.id] = form, add_mesh(self.scene, name, mesh, colour)
+            self.nodes[obstacle.id] = form, add_mesh(self.scene, name, mesh, RESTING)
             if numbered and obstacle.id >= 0:
                 self.scene.add_label(f"{name}/number", str(obstacle.id), anchor="center-center")
         return self.nodes[obstacle.id][1]
+
+
+def moves(obstacle):
+    return np.linalg.norm(obstacle.velocity) > MOVING_MPS
 
 
 def arrow_of(obstacle):

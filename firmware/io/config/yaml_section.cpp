@@ -84,12 +84,21 @@ YamlSection YamlSection::of_file(const std::string& file) {
   }
 }
 
+int YamlSection::line_of(const std::string& key) const {
+  YAML::Mark mark = node_.Mark();
+  for (const auto& entry : node_)
+    if (name_of(entry.first) == key.substr(0, key.find('['))) mark = entry.first.Mark();
+  return mark.is_null() ? 0 : mark.line + 1;
+}
+
 void YamlSection::fail(const std::string& key, const std::string& complaint) const {
   std::string name = prefix_ + key;
   if (key.empty() && !name.empty()) name.pop_back();  // the dot of the prefix
   name = printable(name, kLongestKey);
-  throw std::runtime_error(fmt::format("{}: {}{}{}", printable(file_), name, name.empty() ? "" : ": ",
-                                       printable(complaint, kLongestComplaint)));
+  const int line = node_.IsMap() ? line_of(key) : 0;
+  throw std::runtime_error(fmt::format("{}: {}{}{}{}", printable(file_), name, name.empty() ? "" : ": ",
+                                       printable(complaint, kLongestComplaint),
+                                       line > 0 ? fmt::format(" (line {})", line) : ""));
 }
 
 YAML::Node YamlSection::take(const std::string& key) {

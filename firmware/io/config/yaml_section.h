@@ -19,8 +19,8 @@ struct NumberRange {
 };
 
 /// One mapping of a YAML file, read strictly: every key is known and given once, every value has the right kind and
-/// range. All errors are std::runtime_error with one line: file, key, complaint. Control characters in it are replaced
-/// and its length is bounded, because any of it can come from a damaged file.
+/// range. All errors are std::runtime_error with one line: file, key, complaint, number of the line. Control characters
+/// in it are replaced and its length is bounded, because any of it can come from a damaged file.
 ///
 /// A member that takes a `value` to fill is for an optional key: it leaves the value unchanged when the key is absent
 /// or has no value (null). A member that returns the value is for a required key.
@@ -97,6 +97,8 @@ class YamlSection {
 
   /// The value of a key, null when absent; the key counts as known from then on.
   YAML::Node take(const std::string& key);
+  /// Where a key stands in the file, from 1, or the first key of the section where it is absent; 0: unknown.
+  int line_of(const std::string& key) const;
   double to_number(const std::string& key, const YAML::Node& node, NumberRange range) const;
   std::string to_text(const std::string& key, const YAML::Node& node) const;
 

@@ -95,6 +95,11 @@ void surroundings_and_other_arms_count_in_the_clearance(void**) {
   Summary summary(10'000);
   summary.add(row);
   check(summary.text({}).find("surroundings[0]") != std::string::npos, "%s", summary.text({}).c_str());
+  row.world.surroundings[0].id = 3;
+  row.world.surroundings[0].name = "can";
+  Summary named(10'000);
+  named.add(row);
+  check(named.text({}).find("and can (obstacle 3) at") != std::string::npos, "%s", named.text({}).c_str());
 
   row.world.surroundings.clear();
   row.neighbour_m = -0.01;

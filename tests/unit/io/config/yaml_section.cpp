@@ -96,6 +96,20 @@ void an_error_names_the_line_of_invalid_yaml(void**) {
   check(one_line_with(second, {"section.yaml: line 2: ", "second document"}), "'%s'", second.c_str());
 }
 
+void an_error_names_the_line_of_its_key(void**) {
+  YamlSection section = section_of("known: 1\nlist:\n  - {inner: 1}\n  - inner: x\n    more: 1\nvalues: [1,\n  2]\n");
+  std::vector<YamlSection> list = section.sections("list");
+  check(one_line_with(message_of([&] { section.number("known", {2, 3}); }), {"must be from 2 to 3 (line 1)"}), "known");
+  check(one_line_with(message_of([&] { list[1].number("inner", kUnitRange); }), {"(line 4)"}), "inner");
+  check(one_line_with(message_of([&] { list[1].finish(); }), {"list[1].more: unknown key (line 5)"}), "more");
+  check(one_line_with(message_of([&] { list[0].text("absent"); }), {"list[0].absent: is missing (line 3)"}), "absent");
+  check(one_line_with(message_of([&] { section.numbers("values", 2, 2, kUnitRange); }), {"values[1]", "(line 6)"}),
+        "values");
+  YamlSection none = YamlSection::empty();
+  const std::string without = message_of([&] { none.text("absent"); });
+  check(without.find("line ", 13) == std::string::npos, "'%s'", without.c_str());
+}
+
 }  // namespace
 
 int main() {
@@ -106,6 +120,7 @@ int main() {
       cmocka_unit_test(a_number_is_finite_unless_its_range_is_not),
       cmocka_unit_test(an_unread_key_is_refused),
       cmocka_unit_test(an_error_names_the_line_of_invalid_yaml),
+      cmocka_unit_test(an_error_names_the_line_of_its_key),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
