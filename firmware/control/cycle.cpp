@@ -74,9 +74,7 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                                  settings.period_s(),
                                  comfort,
                                  mode == Mode::kTrack ? settings.shield.person_weight : 0.0};
-  const VelocityRange sustainable =
-      sustainable_range(model.arm.limits, input.position_rad, input.position_rad, settings.period_s());
-  const ShieldResult safe = shield(settings.shield, shield_input, sustainable, range,
+  const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
                                    weighted_task(input.tool_jacobian, turn_weight_m(input.target)), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;
   if (safe.links_limit) report.limiting |= kLimitingSelf;
@@ -156,11 +154,13 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
 
   const Target target = inputs.target.message ? present_target(model, poses, inputs.target, now_s) : Target{};
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
-  const LawInput input{model.arm, poses, jacobian, arm.position_rad, arm.velocity_radps, target, obstacles, clearance};
+  const double period_s = model.settings.period_s();
+  const VelocityRange sustainable = sustainable_range(model.arm.limits, arm.position_rad, arm.position_rad, period_s);
+  const LawInput input{model.arm, poses,     jacobian,  arm.position_rad, arm.velocity_radps,
+                       target,    obstacles, clearance, sustainable};
   const Guide* guide = inputs.guide && inputs.guide->knots > 0 ? inputs.guide : nullptr;
   // Only TRACK is slowed: a retreat in HOLD is not the operator's.
   const double scale = next.supervision.mode == Mode::kTrack ? monitored.speed_scale : 1.0;
-  const double period_s = model.settings.period_s();
   const double guide_s =
       guide ? guide_time_s(model.arm, *guide, arm.position_rad, now_s, period_s, scale * period_s, next.guide_progress)
             : now_s;

@@ -1,7 +1,9 @@
 #include "firmware/control/sidestep_law.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "firmware/model/bounded_least_squares.h"
 #include "firmware/model/damped_inverse.h"
 
 namespace sidestep {
@@ -10,6 +12,7 @@ namespace {
 // Tuned on the campaign's follow6d.
 constexpr double kFullPosePosture = 4.0;
 constexpr double kFullPoseDamping = 0.4;  // of the weighted task, whose singular values are smaller
+constexpr double kLeastDamping = 1e-3;    // where joints are at their bounds: the others may be too few for the task
 
 /// v scaled down to a largest norm.
 Vector3 clipped(const Vector3& v, double largest) {
@@ -17,10 +20,18 @@ Vector3 clipped(const Vector3& v, double largest) {
   return norm > largest ? Vector3(v * (largest / norm)) : v;
 }
 
-/// The preference: S (J S)* (x - J p) + p is p in the null space and x in the task. S = diag(joint_scale).
+bool is_within(const JointVector& velocity_radps, const VelocityRange& range) {
+  return (velocity_radps.array() >= range.lower_radps.array()).all() &&
+         (velocity_radps.array() <= range.upper_radps.array()).all();
+}
+
+/// The preference: S (J S)* (x - J p) + p is p in the null space and x in the task. S = diag(joint_scale). Where that
+/// takes a joint of a full pose beyond its range, the least squares solution within the range replaces it.
 template <int rows>
-void follow(const SidestepGains& gains, const JointVector& joint_scale, const TaskJacobian& jacobian,
-            const TaskVector& x, const JointVector& preferred_radps, NominalCommand& nominal) {
+void follow(const SidestepGains& gains, const LawInput& input, const TaskVector& x, const JointVector& preferred_radps,
+            NominalCommand& nominal) {
+  const JointVector& joint_scale = input.arm.joint_scale;
+  const TaskJacobian& jacobian = input.tool_jacobian;
   TaskJacobian scaled = weighted_task(jacobian);
   for (Eigen::Index i = 0; i < scaled.cols(); ++i) scaled.col(i) *= joint_scale[i];
   constexpr double kDamping = rows == 6 ? kFullPoseDamping : 1.0;
@@ -29,6 +40,14 @@ void follow(const SidestepGains& gains, const JointVector& joint_scale, const Ta
   Eigen::Matrix<double, rows, 1> rest = x - jacobian.lazyProduct(preferred_radps);
   if constexpr (rows == 6) rest.template tail<3>() *= kTurnWeight_m;
   nominal.velocity_radps = preferred_radps + joint_scale.cwiseProduct(inverse * rest);
+  if constexpr (rows == 6) {
+    const VelocityRange& range = input.sustainable;
+    if (is_within(nominal.velocity_radps, range)) return;
+    const JointVector within = bounded_least_squares(scaled, rest, std::max(nominal.damping, kLeastDamping),
+                                                     (range.lower_radps - preferred_radps).cwiseQuotient(joint_scale),
+                                                     (range.upper_radps - preferred_radps).cwiseQuotient(joint_scale));
+    nominal.velocity_radps = preferred_radps + joint_scale.cwiseProduct(within);
+  }
 }
 
 }  // namespace
@@ -49,8 +68,7 @@ JointVector away_from_limits(const SidestepGains& gains, const LawInput& input) 
 
 NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps) {
   const Target& target = input.target;
-  const TaskJacobian& jacobian = input.tool_jacobian;
-  const Eigen::Index rows = jacobian.rows();
+  const Eigen::Index rows = input.tool_jacobian.rows();
   const Vector3 error_m = target.position_m - input.poses.tool_position;
 
   NominalCommand nominal;
@@ -64,9 +82,9 @@ NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, c
   }
 
   if (rows == 6)
-    follow<6>(gains, input.arm.joint_scale, jacobian, x, preferred_radps, nominal);
+    follow<6>(gains, input, x, preferred_radps, nominal);
   else
-    follow<3>(gains, input.arm.joint_scale, jacobian, x, preferred_radps, nominal);
+    follow<3>(gains, input, x, preferred_radps, nominal);
   return nominal;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <limits>
+
 #include "firmware/model/load/load_arm.h"
+#include "firmware/model/velocity_range.h"
 
 namespace sidestep::test {
 
@@ -16,6 +19,13 @@ inline JointVector home_rad() {
   q_rad[1] = M_PI / 2;
   q_rad[3] = -M_PI / 2;
   return q_rad;
+}
+
+/// A range of joint velocities without bounds, 7 joints.
+inline const VelocityRange& any_velocity() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static const VelocityRange range{JointVector::Constant(7, -kInfinity), JointVector::Constant(7, kInfinity)};
+  return range;
 }
 
 }  // namespace sidestep::test

@@ -2,6 +2,7 @@
 
 #include "firmware/control/types/messages.h"
 #include "firmware/model/clearance.h"
+#include "firmware/model/velocity_range.h"
 
 namespace sidestep {
 
@@ -15,6 +16,7 @@ struct LawInput {
   const Target& target;               ///< extrapolated to the time of the cycle
   const ObstacleView& obstacles;
   const Clearance& clearance;
+  const VelocityRange& sustainable;  ///< of the joint velocities, see sustainable_range()
 };
 
 /// In a full pose a turn of the tool by 1 rad weighs as much as a way of 0.1 m, about the size of a hand: where joints

@@ -102,7 +102,7 @@ void after_its_end_a_guide_is_a_preference_unless_the_arm_waits_there(void**) {
   const TaskJacobian jacobian = tool_jacobian(poses, 3);
   const ObstacleView no_obstacles;
   const Clearance clearance{};
-  const LawInput now{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance};
+  const LawInput now{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance, test::any_velocity()};
   Guide guide = random_guide(random, 2);
   const double after_s = guide.end_s() + 1.0;
   const NominalCommand holding = guided_law(gains, now, guide, after_s);

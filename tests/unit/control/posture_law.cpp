@@ -18,7 +18,7 @@ NominalCommand toward(const JointVector& goal_rad, const JointVector& q_rad, con
   const JointVector rest = JointVector::Zero(7);
   const ObstacleView obstacles{};
   const Clearance clearance{};
-  return posture_law(gains, {lwa3(), poses, jacobian, q_rad, rest, target, obstacles, clearance});
+  return posture_law(gains, {lwa3(), poses, jacobian, q_rad, rest, target, obstacles, clearance, test::any_velocity()});
 }
 
 void the_velocity_points_straight_at_the_posture_within_all_limits(void**) {

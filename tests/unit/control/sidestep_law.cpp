@@ -13,13 +13,14 @@ namespace {
 
 const SidestepGains kGains;
 
-NominalCommand nominal_at(const JointVector& q_rad, const Target& target) {
+NominalCommand nominal_at(const JointVector& q_rad, const Target& target,
+                          const VelocityRange& range = test::any_velocity()) {
   const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
   const JointVector at_rest = JointVector::Zero(q_rad.size());
   const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
   const ObstacleView no_obstacles{};
   const Clearance clearance{};
-  const LawInput input{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance};
+  const LawInput input{lwa3(), poses, jacobian, q_rad, at_rest, target, no_obstacles, clearance, range};
   return sidestep_law(kGains, input, away_from_limits(kGains, input));
 }
 
@@ -153,6 +154,32 @@ void joints_near_their_limits_return_while_the_tool_stays(void**) {
   }
 }
 
+/// Joint by joint: the one that moves most is held; the six others follow the moving pose.
+void the_other_joints_make_up_for_one_at_its_limit(void**) {
+  Random random(7);
+  int checked = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const JointVector q_rad = regular_configuration(random, 6);
+    Target target = target_at(q_rad, true);
+    target.velocity_mps = random.inside(-0.3, 0.3);
+    target.angular_velocity_radps = random.inside(-0.5, 0.5);
+    const NominalCommand free = nominal_at(q_rad, target);
+    Eigen::Index most = 0;
+    free.velocity_radps.cwiseAbs().maxCoeff(&most);
+    TaskJacobian others = weighted_task(tool_jacobian(forward_kinematics(lwa3(), q_rad), 6));
+    others.col(most).setZero();
+    if (Eigen::JacobiSVD<Eigen::MatrixXd>(others).singularValues()[5] < kGains.sigma_0) continue;
+    ++checked;
+    VelocityRange range = test::any_velocity();
+    range.lower_radps[most] = -0.1;
+    range.upper_radps[most] = 0.1;
+    const NominalCommand bounded = nominal_at(q_rad, target, range);
+    check(std::abs(bounded.velocity_radps[most]) <= 0.1 + 1e-12, "trial %d: beyond the limit", trial);
+    check_near_because(tool_motion(q_rad, bounded, 6), tool_motion(q_rad, free, 6), 1e-3, "trial %d", trial);
+  }
+  check(checked > 50, "%d trials", checked);
+}
+
 }  // namespace
 
 int main() {
@@ -163,6 +190,7 @@ int main() {
       cmocka_unit_test(toward_an_orientation_the_tool_turns_by_the_shortest_rotation),
       cmocka_unit_test(through_singular_configurations_the_nominal_velocity_is_continuous),
       cmocka_unit_test(joints_near_their_limits_return_while_the_tool_stays),
+      cmocka_unit_test(the_other_joints_make_up_for_one_at_its_limit),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

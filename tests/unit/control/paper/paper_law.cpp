@@ -89,7 +89,8 @@ class Scene {
     const Clearance clearance = measure_clearance(lwa3(), poses, view, {0.4, 0.0});
     nearest_axis = clearance.nearest_axis;
     const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
-    return paper_law(gains, kPeriod_s, {lwa3(), poses, jacobian, q_rad, qd_radps, target, view, clearance},
+    return paper_law(gains, kPeriod_s,
+                     {lwa3(), poses, jacobian, q_rad, qd_radps, target, view, clearance, test::any_velocity()},
                      planned_mps);
   }
 
