@@ -59,10 +59,14 @@ constexpr std::array<Column, 4> kFurnitureColumns{{
     {"model_goal_clearance_m", &TrialMetrics::model_goal_clearance_m},
 }};
 
+/// Only in files with families whose goal is a posture.
+constexpr Column kPostureColumn{"final_posture_rad", &TrialMetrics::final_posture_rad};
+
 std::vector<Column> columns_of(MoreColumns more) {
   std::vector<Column> columns(kColumns.begin(), kColumns.end());
   if (more.people) columns.insert(columns.end(), kPeopleColumns.begin(), kPeopleColumns.end());
   if (more.furniture) columns.insert(columns.end(), kFurnitureColumns.begin(), kFurnitureColumns.end());
+  if (more.posture) columns.push_back(kPostureColumn);
   return columns;
 }
 
@@ -76,7 +80,8 @@ std::string header(MoreColumns more) {
 std::vector<Column> columns_named(const std::string& line) {
   for (const bool people : {false, true})
     for (const bool furniture : {false, true})
-      if (line == header({people, furniture})) return columns_of({people, furniture});
+      for (const bool posture : {false, true})
+        if (line == header({people, furniture, posture})) return columns_of({people, furniture, posture});
   return {};
 }
 
@@ -175,7 +180,7 @@ std::vector<Row> read_interrupted_csv(const std::string& file) {
 }
 
 bool same_result(const Row& a, const Row& b) {
-  const std::vector<Column> columns = columns_of({true, true});
+  const std::vector<Column> columns = columns_of({true, true, true});
   return std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
     const double x = a.metrics.*column.value, y = b.metrics.*column.value;
     const bool is_cpu = std::string(column.name).rfind("cpu", 0) == 0;

@@ -18,13 +18,15 @@ struct Row {
   TrialMetrics metrics;
 };
 
-/// Columns that only files with families of people or of furniture have; other families leave them at nan there.
+/// Columns that only files with families of people, of furniture or with posture goals have; other families leave them
+/// at nan there.
 struct MoreColumns {
-  bool people = false, furniture = false;
+  bool people = false, furniture = false, posture = false;
 
   void include(const Family& family) {
     people = people || family.has_people();
     furniture = furniture || family.has_furniture();
+    posture = posture || family.posture;
   }
 };
 

@@ -61,6 +61,12 @@ std::vector<Family> make_families() {
   add_furniture("cage", Furniture::kCage);
   add_furniture("table", Furniture::kTable);
   add_furniture("under-table", Furniture::kUnderTable);
+  for (const bool posture : {false, true}) {
+    Family family{posture ? "boxes@posture" : "boxes", "boxes", 5, 0.3};
+    family.boxes = true;
+    family.posture = posture;
+    all.push_back(family);
+  }
   return all;
 }
 
@@ -75,8 +81,9 @@ std::vector<const Family*> families_of(const std::string& word) {
   std::vector<const Family*> chosen;
   std::string known = "all, dodge, people, furniture";
   for (const Family& family : families()) {
-    if (word == family.name || (word == "all" && !family.has_furniture()) || (word == "dodge" && family.dodge) ||
-        (word == "people" && family.has_people()) || (word == "furniture" && family.has_furniture()))
+    if (word == family.name || (word == "all" && !family.has_furniture() && !family.boxes) ||
+        (word == "dodge" && family.dodge) || (word == "people" && family.has_people()) ||
+        (word == "furniture" && family.has_furniture()))
       chosen.push_back(&family);
     known += ", " + family.name;
   }

@@ -27,6 +27,8 @@ struct Family {
   bool camera = false;                     ///< with people: a camera sees them, late, with noise and loss
   Furniture furniture = Furniture::kNone;  ///< not kNone: boxes and cylinders at rest, reported exactly
   bool mover = false;                      ///< with furniture: a sphere flies past while the arm works
+  bool boxes = false;    ///< the obstacles are boxes that move to and fro; the trial ends when the goal is reached
+  bool posture = false;  ///< with boxes: the goal is a posture, not a position of the tool
 
   bool has_people() const { return people != People::kNone; }
   bool has_furniture() const { return furniture != Furniture::kNone; }
@@ -40,7 +42,7 @@ const Family& family_named(const std::string& name);
 
 /// The families that a value of `--family` selects: a family's name, `dodge`, `people` or `furniture` for all of
 /// theirs, or `all` for all but those of furniture, whose witnesses cost up to a minute a scene (arms of meshes, the
-/// cage). Throws like family_named().
+/// cage), and of boxes, which are meant for longer arms. Throws like family_named().
 std::vector<const Family*> families_of(const std::string& word);
 
 }  // namespace sidestep::campaign

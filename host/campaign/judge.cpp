@@ -28,9 +28,10 @@ Judge::Judge(const Scene& scene, const Joints& qd_radps)
       smoothness_(qd_radps),
       start_rotation_(scene.arm->pose(scene.start_rad).tool_rotation),
       last_rad_(scene.start_rad) {
-  metrics_.obstacles = static_cast<double>(scene.spheres.size() + scene.capsules.size() + scene.furniture.size());
+  metrics_.obstacles =
+      static_cast<double>(scene.spheres.size() + scene.boxes.size() + scene.capsules.size() + scene.furniture.size());
   metrics_.duration_s = scene.duration_s();
-  if (scene.family->dodge || scene.family->has_people()) return;
+  if (scene.family->dodge || scene.family->has_people() || scene.family->boxes) return;
   metrics_.witness_arrival_s = witness_arrival_s(scene);
   metrics_.witness_path_rad =
       scene.witness_path.empty() ? (scene.goal_rad - scene.start_rad).norm() : scene.witness_path.length_rad();
@@ -55,6 +56,11 @@ void Judge::record_state(int k, const Joints& q_rad) {
   measure_clearance(arm, q_rad, t_s);
   measure_joints(q_rad);
   measure_tool_error(arm, t_s);
+  measure_arrival(q_rad, t_s);
+}
+
+bool Judge::is_decided() const {
+  return scene_.family->boxes && at_goal_ && now_s_ - far_until_s_ > kDwell_s;
 }
 
 void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s) {
@@ -99,7 +105,6 @@ void Judge::measure_tool_error(const ArmPose& arm, double t_s) {
   const double error_m = (target_at(scene_, t_s).position_m - arm.tool()).norm();
   metrics_.final_error_m = error_m;
   measure_turn(arm);
-  if (error_m >= kArrived_m || turn_rad_ >= kArrived_rad) far_until_s_ = t_s;
   if (!is_scored(t_s, error_m)) return;
   ++scored_;
   if (error_m < kArrived_m) ++on_target_;
@@ -109,6 +114,16 @@ void Judge::measure_tool_error(const ArmPose& arm, double t_s) {
       scene_.family->full_pose ? orientation_target_at(scene_, t_s)->orientation.toRotationMatrix() : start_rotation_;
   const double turn_rad = Eigen::AngleAxisd(arm.tool_rotation * reference.transpose()).angle();
   squares_rad2_ += turn_rad * turn_rad;
+}
+
+void Judge::measure_arrival(const Joints& q_rad, double t_s) {
+  now_s_ = t_s;
+  at_goal_ = metrics_.final_error_m < kArrived_m && turn_rad_ < kArrived_rad;
+  if (scene_.family->posture) {
+    metrics_.final_posture_rad = (q_rad - scene_.goal_rad).cwiseAbs().maxCoeff();
+    at_goal_ = metrics_.final_posture_rad < kArrivedJoint_rad;
+  }
+  if (!at_goal_) far_until_s_ = t_s;
 }
 
 void Judge::measure_turn(const ArmPose& arm) {
@@ -126,8 +141,7 @@ void Judge::record_command(const Joints& velocity_radps, double cpu_s) {
 
 TrialMetrics Judge::metrics() const {
   TrialMetrics metrics = metrics_;
-  if (metrics.final_error_m < kArrived_m && turn_rad_ < kArrived_rad)
-    metrics.arrival_s = far_until_s_ < 0.0 ? 0.0 : far_until_s_ + kPeriod_s;
+  if (at_goal_) metrics.arrival_s = far_until_s_ < 0.0 ? 0.0 : far_until_s_ + kPeriod_s;
   if (scored_ > 0) metrics.error_rms_m = std::sqrt(squares_m2_ / scored_);
   if (scored_ > 0 && scene_.family->chase) metrics.on_target_share = static_cast<double>(on_target_) / scored_;
   if (scored_ > 0 && (scene_.family->dodge || scene_.family->full_pose))

@@ -18,6 +18,9 @@ class Judge {
   /// The command of the cycle that follows, and its CPU time.
   void record_command(const Joints& velocity_radps, double cpu_s);
 
+  /// Whether the trial may end early: among boxes, which may cover the goal again, when the arm has arrived.
+  bool is_decided() const;
+
   /// To be called after the last period.
   TrialMetrics metrics() const;
 
@@ -30,6 +33,7 @@ class Judge {
   double measure_self_clearance(const ArmPose& arm);
   void measure_joints(const Joints& q_rad);
   void measure_tool_error(const ArmPose& arm, double t_s);
+  void measure_arrival(const Joints& q_rad, double t_s);
   /// Only among furniture, whose goal rests.
   void measure_turn(const ArmPose& arm);
   void measure_goal_clearance();
@@ -45,7 +49,9 @@ class Judge {
   double turn_rad_ = 0.0;  ///< orientation error of the tool, if the goal has an orientation
   bool near_ = false;
   bool reached_ = false;
-  double far_until_s_ = -1.0;  ///< the last time at which the tool error was kArrived_m or more
+  bool at_goal_ = false;
+  double far_until_s_ = -1.0;  ///< the last time at which the arm was not at its goal
+  double now_s_ = 0.0;
   double squares_m2_ = 0.0, squares_rad2_ = 0.0;
   int scored_ = 0, on_target_ = 0;
   double cpu_s_ = 0.0;

@@ -27,6 +27,11 @@ Limits symmetric(double odd_rad, double rad_2, double rad_4, double rad_6, doubl
   return limits;
 }
 
+/// Families with the limits of the URDF; the others have those of range().
+bool has_full_limits(const Family& family) {
+  return family.dodge || family.has_people() || family.boxes;
+}
+
 }  // namespace
 
 ArmPose Lwa3Arm::pose(const Joints& q_rad) const {
@@ -110,13 +115,12 @@ Limits Lwa3Arm::range() const {
 }
 
 Limits Lwa3Arm::limits(const Family& family) const {
-  return family.dodge || family.has_people() ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : range();
+  return has_full_limits(family) ? symmetric(6.25, 1.97, 1.97, 1.97, 2.0) : range();
 }
 
 ArmSource Lwa3Arm::source(const Family& family) const {
-  return {
-      "urdf/lwa3.urdf", "base_link", "tool",
-      config_name(family.dodge || family.has_people() ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml")};
+  return {"urdf/lwa3.urdf", "base_link", "tool",
+          config_name(has_full_limits(family) ? "firmware/config/lwa3.yaml" : "host/campaign/benchmark.yaml")};
 }
 
 const JudgeArm& lwa3_arm() {

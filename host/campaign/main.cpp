@@ -42,8 +42,9 @@ struct Options {
 void declare(CommandLine& app, Options& options) {
   app.add_option("--family", options.family,
                  "moving, fast, crowd, clutter, chase, erratic, real, follow6d, chase6d, dodge, people, furniture, "
-                 "one of the variants of the last three (such as shelf or shelf@mover), or all, which is all but "
-                 "furniture")
+                 "one of the variants of the last three (such as shelf or shelf@mover), boxes (five that move; the "
+                 "goal is the tool's position), boxes@posture (the goal is a posture), or all, which is all but "
+                 "furniture and boxes")
       .show_default();
   app.add_option("--count", options.count, "scenes of each family, runs of a search")
       .show_default()
@@ -119,6 +120,9 @@ std::vector<Task> tasks_of(const Options& options) {
   const Shard shard = to_shard(options.shard);
   std::vector<Task> tasks;
   for (const Family* family : families_of(options.family)) {
+    if (family->posture && options.law != "sidestep")
+      throw std::runtime_error(
+          fmt::format("--law: {} has posture goals, which only the law sidestep has", family->name));
     if (options.decoys > 0 && !family->dodge) throw std::runtime_error("--decoys: only for dodges");
     for (uint64_t k = shard.index - 1; k < options.count; k += shard.count)
       tasks.push_back({family, scene_seed(options.seed, k)});
@@ -281,7 +285,8 @@ int act(const Options& options) {
 
 int main(int argc, char** argv) {
   CommandLine app(
-      "Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable.");
+      "Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable; "
+      "among people and boxes without.");
   Options options;
   declare(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;

@@ -35,6 +35,9 @@ struct TrialMetrics {
   double goal_clearance_m = kNone;        ///< of the witness at its goal, to the furniture
   double model_goal_clearance_m = kNone;  ///< the same in the controller's model, which is never larger
 
+  // Only if the goal is a posture:
+  double final_posture_rad = kNone;  ///< largest distance of a joint to the goal at the end
+
   // Only among people:
   double rest_clearance_m = kNone;  ///< least clearance of an arm that stays at the start
   double closing_mps = kNone;       ///< contact: largest speed at which the arm itself made the clearance smaller

@@ -49,6 +49,18 @@ std::vector<Capsule> capsules_at(const Scene& scene, double t_s) {
   return capsules;
 }
 
+std::vector<sim::Obstacle> boxes_at(const Scene& scene, double t_s) {
+  std::vector<sim::Obstacle> boxes(scene.boxes.size());
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const PointMotion centre = scene.boxes[i].at(t_s);
+    boxes[i].solid.shape = sim::Shape::kBox;
+    boxes[i].solid.size_m.setConstant(kBoxEdge_m);
+    boxes[i].motion.position_m = centre.position_m;
+    boxes[i].motion.velocity_mps = centre.velocity_mps;
+  }
+  return boxes;
+}
+
 double sphere_clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
   double least_m = within_m;
   for (const SpherePath& sphere : scene.spheres)
@@ -58,6 +70,7 @@ double sphere_clearance_at(const Scene& scene, const ArmPose& pose, double t_s, 
 
 double clearance_at(const Scene& scene, const ArmPose& pose, double t_s, double within_m) {
   double least_m = sphere_clearance_at(scene, pose, t_s, within_m);
+  if (!scene.boxes.empty()) least_m = scene.arm->solid_clearance(pose, boxes_at(scene, t_s), least_m);
   if (!scene.furniture.empty()) least_m = scene.arm->solid_clearance(pose, scene.furniture, least_m);
   return scene.capsules.empty() ? least_m : scene.arm->clearance(pose, capsules_at(scene, t_s), least_m);
 }

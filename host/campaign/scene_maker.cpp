@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/campaign/boxes/boxes_maker.h"
 #include "host/campaign/dodge_maker.h"
 #include "host/campaign/furniture/furniture_maker.h"
 #include "host/campaign/people/people_maker.h"
@@ -117,9 +118,15 @@ bool try_people(Random& random, Scene& scene) {
   return make_people(random, scene, motion_s(scene)) && plain_tracking_hits(scene);
 }
 
+bool try_boxes(Random& random, Scene& scene) {
+  const Joints start_rad = draw_posture(random, *scene.arm, 0.9, kNoFloor);
+  return make_boxes(random, scene, start_rad, draw_posture(random, *scene.arm, 0.9, kNoFloor));
+}
+
 bool try_scene(Random& random, Scene& scene) {
   if (scene.family->has_furniture()) return make_furniture(random, scene);
   if (scene.family->has_people()) return try_people(random, scene);
+  if (scene.family->boxes) return try_boxes(random, scene);
   if (scene.family->dodge) return make_dodge(random, scene, draw_posture(random, *scene.arm, 0.7, kNoFloor));
   draw_witness(random, scene);
   return draw_spheres(random, scene) && (scene.spheres.empty() || plain_tracking_hits(scene));
@@ -128,6 +135,7 @@ bool try_scene(Random& random, Scene& scene) {
 const char* lacks(const Family& family) {
   if (family.has_people()) return "persons touch an arm that does not evade";
   if (family.has_furniture()) return "path was found among furniture that blocks plain tracking";
+  if (family.boxes) return "start and goal are above the ground and free of boxes";
   return "spheres keep clear of the witness and block plain tracking";
 }
 

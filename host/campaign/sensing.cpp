@@ -60,6 +60,7 @@ ObstacleMeasurement Sensing::exact(int64_t now_us, double t_s) const {
   ObstacleMeasurement measurement;
   measurement.received_us = now_us;
   for (const SpherePath& sphere : scene_.spheres) measurement.obstacles.push_back(moving_sphere(sphere.at(t_s)));
+  for (const sim::Obstacle& box : boxes_at(scene_, t_s)) measurement.obstacles.push_back(reported(box));
   for (const CapsulePath& capsule : scene_.capsules) measurement.obstacles.push_back(person_obstacle(capsule.at(t_s)));
   for (const sim::Obstacle& solid : scene_.furniture) measurement.obstacles.push_back(reported(solid));
   return measurement;

@@ -2,12 +2,22 @@
 
 namespace sidestep::campaign {
 
-Obstacle reported(const sim::Obstacle& solid) {
+namespace {
+
+Obstacle at_rest(const sim::Obstacle& solid) {
   const Vector3 &position = solid.motion.position_m, &size = solid.solid.size_m;
   const Matrix3 rotation = solid.motion.orientation.toRotationMatrix();
   if (solid.solid.shape == sim::Shape::kBox) return box_obstacle(position, rotation, size);
   if (solid.solid.shape == sim::Shape::kCylinder) return cylinder_obstacle(position, rotation, size.x(), size.y());
   return sphere_obstacle(position, size.x());
+}
+
+}  // namespace
+
+Obstacle reported(const sim::Obstacle& solid) {
+  Obstacle obstacle = at_rest(solid);
+  obstacle.velocity_mps = solid.motion.velocity_mps;
+  return obstacle;
 }
 
 sim::Obstacle capsule_obstacle(const Capsule& capsule) {

@@ -5,7 +5,7 @@
 
 namespace sidestep::campaign {
 
-/// A box, cylinder or sphere at rest as the controller receives it. Its id is not set.
+/// A box, cylinder or sphere that does not turn, as the controller receives it. Its id is not set.
 Obstacle reported(const sim::Obstacle& solid);
 
 /// A capsule at rest for the simulator's distances.

@@ -27,6 +27,7 @@ bool touched_itself(const Row& row) {
   return row.metrics.self_clearance_m <= 0.0;
 }
 bool arrived(const Row& row) {
+  if (row.family->posture) return row.metrics.final_posture_rad < kArrivedJoint_rad;
   const bool turned_away = row.metrics.final_turn_rad >= kArrived_rad;  // false where there is no orientation
   return row.metrics.final_error_m < arrived_within_m(*row.family) && !turned_away;
 }

@@ -15,7 +15,7 @@ bool touched(const Row& row);
 /// Links of the arm touched each other.
 bool touched_itself(const Row& row);
 /// The tool is at the target at the end: within 10 mm, after a dodge within 5 mm; among furniture also within 0.05 rad
-/// where the goal has an orientation.
+/// where the goal has an orientation. If the goal is a posture: every joint is within 0.01 rad.
 bool arrived(const Row& row);
 /// The arm arrived without contact.
 bool succeeded(const Row& row);

@@ -123,6 +123,18 @@ const Columns& furniture_columns() {
   return columns;
 }
 
+const Columns& boxes_columns() {
+  static const Columns columns{
+      interval_column("success", succeeded),
+      interval_column("contact", touched),
+      {"of links", "%", 1, share(touched_itself)},
+      {"arrival", "%", 1, share(arrived)},
+      {"clearance", "min, mm", 1, minimum(&TrialMetrics::clearance_m, kMilli)},
+      {"arrival", "s", 2, average_success(&TrialMetrics::arrival_s)},
+  };
+  return columns;
+}
+
 const Columns& cpu_columns() {
   static const Columns columns{
       {"hot step", "mean, us", 1, average(&TrialMetrics::cpu_mean_s, kMicro)},
@@ -198,19 +210,20 @@ std::string tables(const std::vector<Row>& rows, bool with_cpu) {
     if (with_cpu) columns.insert(columns.end(), cpu_columns().begin(), cpu_columns().end());
     return columns;
   };
-  std::vector<Sample> reaches, full_poses, dodges, people, furniture;
+  std::vector<Sample> reaches, full_poses, dodges, people, furniture, boxes;
   for (Sample& sample : samples(rows)) {
     const Family& family = *sample.front().family;
     (family.dodge             ? dodges
      : family.has_people()    ? people
      : family.has_furniture() ? furniture
+     : family.boxes           ? boxes
      : family.full_pose       ? full_poses
                               : reaches)
         .push_back(std::move(sample));
   }
   return table(reaches, all(reach_columns())) + table(full_poses, all(full_pose_columns())) +
          table(dodges, all(dodge_columns())) + table(people, all(people_columns())) +
-         table(furniture, all(furniture_columns()));
+         table(furniture, all(furniture_columns())) + table(boxes, all(boxes_columns()));
 }
 
 std::string smoothness_table(const std::vector<Row>& rows) {

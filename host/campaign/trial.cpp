@@ -35,7 +35,9 @@ class Loop {
     const Joints q_rad = plant_.q_rad(), qd_radps = plant_.qd_radps();
     const PointMotion target = target_at(scene_, t_s);
     const std::optional<OrientationTarget> orientation_target = orientation_target_at(scene_, t_s);
-    return controller_.cycle({now_us_, q_rad, qd_radps, &target, orientation_target, sensing_.newest_at(now_us_, t_s)});
+    const Joints* posture_rad = scene_.family->posture ? &scene_.goal_rad : nullptr;
+    return controller_.cycle(
+        {now_us_, q_rad, qd_radps, &target, orientation_target, sensing_.newest_at(now_us_, t_s), posture_rad});
   }
 
   void apply(const ControllerOutput& output) {
@@ -65,15 +67,14 @@ TrialMetrics run_trial(const Scene& scene, TrialController& controller) {
   }
   Judge judge(scene, loop.plant().last_command_radps());
   PeopleJudge people_judge(scene);
-  for (int k = 0; k < scene.periods; ++k) {
-    if (k > 0) output = loop.control(k * kPeriod_s);
+  for (int k = 0;; ++k) {
     judge.record_state(k, loop.plant().q_rad());
     people_judge.record_state(loop.plant().q_rad());
+    if (k == scene.periods || judge.is_decided()) break;
+    if (k > 0) output = loop.control(k * kPeriod_s);
     judge.record_command(output.velocity_radps, output.cpu_s);
     loop.apply(output);
   }
-  judge.record_state(scene.periods, loop.plant().q_rad());
-  people_judge.record_state(loop.plant().q_rad());
   TrialMetrics metrics = judge.metrics();
   if (scene.family->has_people()) people_judge.complete(metrics);
   return metrics;

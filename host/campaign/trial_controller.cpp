@@ -69,6 +69,10 @@ class StepController : public TrialController {
 
   void store_target(const ControllerInput& input) {
     target_.utime = input.now_us;
+    if (input.posture_rad) {
+      target_.posture_rad = *input.posture_rad;
+      return;
+    }
     target_.position_m = input.target->position_m;
     target_.velocity_mps = input.target->velocity_mps;
     target_.tracks_orientation = input.orientation_target.has_value();

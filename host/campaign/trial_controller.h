@@ -15,6 +15,7 @@ struct ControllerInput {
   const PointMotion* target;  ///< null: none, the controller holds
   const std::optional<OrientationTarget>& orientation_target;
   const ObstacleMeasurement& obstacles;
+  const Joints* posture_rad = nullptr;  ///< the goal in place of the target; null: none
 };
 
 struct ControllerOutput {

@@ -34,6 +34,7 @@ std::vector<Row> some_rows() {
         row.metrics.cpu_mean_s = 1e-6 * any(engine);
         if (family.has_people()) row.metrics.rest_clearance_m = any(engine);
         if (family.has_furniture()) row.metrics.final_turn_rad = any(engine);
+        if (family.posture) row.metrics.final_posture_rad = any(engine);
         if (family.has_people()) row.metrics.late_way_out = seed % 2 == 0 ? 1.0 : 0.0;
         rows.push_back(row);
       }
@@ -65,7 +66,7 @@ void a_csv_file_preserves_every_bit(void**) {
   }
 }
 
-void only_files_with_people_or_furniture_have_their_columns(void**) {
+void only_files_with_people_furniture_or_postures_have_their_columns(void**) {
   const std::string file = scratch_folder() + "/columns.csv";
   const auto has_columns = [&](const char* family, const char* column) {
     write_csv(file, {{&family_named(family), "paper", 5, {}}});
@@ -78,6 +79,8 @@ void only_files_with_people_or_furniture_have_their_columns(void**) {
   assert_false(has_columns("walk-by@camera", "goal_clearance_m"));
   assert_true(has_columns("shelf", "goal_clearance_m"));
   assert_false(has_columns("shelf", "way_out"));
+  assert_true(has_columns("boxes@posture", "final_posture_rad"));
+  assert_false(has_columns("boxes", "final_posture_rad"));
 }
 
 void rows_of_a_killed_writer_are_read_without_its_unfinished_line(void**) {
@@ -221,6 +224,21 @@ void a_goal_among_furniture_is_reached_in_position_and_orientation(void**) {
   assert_false(arrived(turned) || succeeded(turned));
 }
 
+void a_posture_is_reached_when_every_joint_is_there(void**) {
+  Row away = trial(0.02, 0.001, 3.0), there = trial(0.02, 0.02, 3.0);
+  away.family = there.family = &family_named("boxes@posture");
+  away.metrics.final_posture_rad = 0.011;
+  there.metrics.final_posture_rad = 0.009;
+  assert_true(arrived(there));
+  assert_false(arrived(away));
+}
+
+void all_is_without_furniture_and_boxes(void**) {
+  for (const Family* family : families_of("all")) assert_false(family->has_furniture() || family->boxes);
+  check(families_of("boxes").size() == 1 && !families_of("boxes").front()->posture, "boxes");
+  check(families_of("boxes@posture").front()->posture, "boxes@posture");
+}
+
 void links_that_touch_each_other_are_a_contact(void**) {
   Row near = trial(0.02, 0.001, 3.0), folded = near;
   near.metrics.self_clearance_m = 0.001;
@@ -267,7 +285,7 @@ void a_stopped_run_starts_no_trial(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_csv_file_preserves_every_bit),
-      cmocka_unit_test(only_files_with_people_or_furniture_have_their_columns),
+      cmocka_unit_test(only_files_with_people_furniture_or_postures_have_their_columns),
       cmocka_unit_test(rows_of_a_killed_writer_are_read_without_its_unfinished_line),
       cmocka_unit_test(merged_shards_give_the_table_of_the_whole_run),
       cmocka_unit_test(a_duplicate_trial_is_rejected_by_name),
@@ -278,6 +296,8 @@ int main() {
       cmocka_unit_test(the_table_prints_shares_with_their_interval),
       cmocka_unit_test(contacts_with_persons_are_classified),
       cmocka_unit_test(a_goal_among_furniture_is_reached_in_position_and_orientation),
+      cmocka_unit_test(a_posture_is_reached_when_every_joint_is_there),
+      cmocka_unit_test(all_is_without_furniture_and_boxes),
       cmocka_unit_test(links_that_touch_each_other_are_a_contact),
       cmocka_unit_test(threads_and_shards_do_not_change_the_results),
       cmocka_unit_test(a_stopped_run_starts_no_trial),
