@@ -29,9 +29,9 @@ struct SelfPairs {
 ///
 /// Links of some arms pass each other within millimetres by construction. Therefore the clearance of a pair is the
 /// least of clearance_m and a quantile of its own distance over the samples in which no pair touches, but at least
-/// 1 mm or, if that is less, half the median of its distance. The quantile is the same for all pairs: the largest with
-/// which all pairs together forbid no more than 1.5 % of these samples, or 1.2 % if a shape is a piece of a mesh,
-/// because pieces also touch where meshes do not.
+/// 1 mm (4 mm in a chain of nine or more joints) or, if that is less, half the median of its distance. The quantile is
+/// the same for all pairs: the largest with which all pairs together forbid no more than 1.5 % of these samples. If a
+/// shape is a piece of a mesh, these are 1.2 %, because pieces also touch where meshes do not.
 ///
 /// For start-up; takes about a second, after that the result is cached (disk_cache.h). The samples have a fixed seed,
 /// so that the result is always the same.

@@ -242,14 +242,21 @@ void a_box_that_runs_into_the_arm_is_a_contact(void**) {
   }
 }
 
+void check_success(const char* family, uint64_t seed) {
+  const Scene scene = make_scene(family_named(family), seed, spatial_arm());
+  const TrialMetrics metrics = run_trial(scene, *make_controller(spatial_config().model));
+  check(succeeded({scene.family, "", scene.seed, metrics}), "%s:%d: %g m clear, links %g m, %g m away", family,
+        static_cast<int>(seed), metrics.clearance_m, metrics.self_clearance_m, metrics.final_error_m);
+}
+
 void a_ten_joint_arm_reaches_both_kinds_of_goal(void**) {
   for (const char* family : {"boxes", "boxes@posture"})
-    for (uint64_t seed = 0; seed < kScenes; ++seed) {
-      const Scene scene = make_scene(family_named(family), seed, spatial_arm());
-      const TrialMetrics metrics = run_trial(scene, *make_controller(spatial_config().model));
-      check(succeeded({scene.family, "", scene.seed, metrics}), "%s:%d: %g m clear, %g m away", family,
-            static_cast<int>(seed), metrics.clearance_m, metrics.final_error_m);
-    }
+    for (uint64_t seed = 0; seed < kScenes; ++seed) check_success(family, seed);
+}
+
+/// Here a link ran into another one at full speed.
+void a_chain_that_folds_at_full_speed_does_not_touch_itself(void**) {
+  check_success("boxes", 1'000'091);
 }
 
 void an_exported_scene_has_the_boxes_with_their_turns_and_the_goal(void**) {
@@ -284,6 +291,7 @@ int main() {
       cmocka_unit_test(the_controller_receives_the_boxes_with_their_present_velocities_and_the_ground),
       cmocka_unit_test(a_box_that_runs_into_the_arm_is_a_contact),
       cmocka_unit_test(a_ten_joint_arm_reaches_both_kinds_of_goal),
+      cmocka_unit_test(a_chain_that_folds_at_full_speed_does_not_touch_itself),
       cmocka_unit_test(an_exported_scene_has_the_boxes_with_their_turns_and_the_goal),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -152,6 +152,17 @@ void the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one(void**) {
   for (const SelfPair& pair : find_self_pairs(lwa3(), 0.02).kept) check_near(pair.clearance_m, 0.02, 0.0);
 }
 
+void links_of_a_long_chain_keep_more_than_those_of_a_short_one(void**) {
+  const auto least_m = [](const char* file, const char* base, const char* tip) {
+    double clearance_m = 1.0;
+    for (const SelfPair& pair : find_self_pairs(load_arm(file, base, tip), 0.02).kept)
+      clearance_m = std::min(clearance_m, pair.clearance_m);
+    return clearance_m;
+  };
+  check_near(least_m("tests/data/ten_joints.urdf", "base", "tool"), 0.004, 0.0);
+  check_near(least_m("tests/data/arm6.urdf", "foot", "tip"), 0.001, 0.0);
+}
+
 void ignored_links_form_no_pair(void**) {
   const Pairs pairs = find_self_pairs(lwa3(), 0.02, {{"hand_link", "base_link"}, {"no_link", "base_link"}}).kept;
   const std::vector<std::string> expected = {"base_link forearm_link", "upper_arm_link hand_link"};
@@ -229,6 +240,7 @@ int main() {
       cmocka_unit_test(the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one),
       cmocka_unit_test(clearances_forbid_less_where_pieces_stand_for_meshes),
       cmocka_unit_test(the_pair_that_forbids_most_is_named),
+      cmocka_unit_test(links_of_a_long_chain_keep_more_than_those_of_a_short_one),
       cmocka_unit_test(ignored_links_form_no_pair),
       cmocka_unit_test(an_srdf_disables_collisions),
       cmocka_unit_test(a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact),
