@@ -46,6 +46,7 @@ void Foresight::reset(bool tracking) {
   calls_ = 0;
   searches_left_ = 0;
   faster_left_ = 0;
+  misled_ = false;
   goal_.forget_goal();
 }
 
@@ -81,7 +82,9 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   const bool blocked = tree_planner_.is_blocked(now);
   goal_.examined(blocked);
   if (blocked) return {};
-  Guide guide = planner_.plan_to_target(now);
+  Guide guide;
+  if (!misled_) guide = planner_.plan_to_target(now);
+  misled_ = false;
   if (guide.knots == 0) guide = tree_planner_.plan(now);
   goal_.searched(planner_.found_goal() || tree_planner_.has_goal(now));
   return guide;
@@ -97,7 +100,9 @@ void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
     expected_.cost_s += kCollisionCost_s;
   }
   const Forecast forecast = rollout_.run(now, candidate_);
-  if (forecast.cost_s < expected_.cost_s - worth_s) adopt(candidate_, forecast);
+  const bool is_adopted = forecast.cost_s < expected_.cost_s - worth_s;
+  if (is_adopted) adopt(candidate_, forecast);
+  misled_ = now.target.is_posture() && !is_adopted && !forecast.arrives && !forecast.collides;
   expectation_.set(now, expected_);
   candidate_ = Guide{};
 }

@@ -35,7 +35,9 @@ class Foresight {
   /// since one was not. Otherwise they search in turns: one call plans a candidate with plan_to_target(), or, if that
   /// fails and a collision is predicted, with plan_retreat(). The next call runs a rollout with the candidate and one
   /// with the present guide (or the law alone), which counts as a collision where the forecast before collided. A
-  /// candidate that costs at least 0.5 s less becomes the guide.
+  /// candidate that costs at least 0.5 s less becomes the guide. After one to a posture that neither arrives nor
+  /// collides only the tree planner plans, once: the paths of plan_to_target() may lead links into each other, which
+  /// the shield refuses, and to a posture they are all nearly the same.
   ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
@@ -75,10 +77,11 @@ class Foresight {
   int searches_left_ = 0;  ///< after a forecast that was not good
   int faster_left_ = 0;    ///< calls that improve a good forecast for the present goal
   Guide guide_;
-  Forecast expected_;              ///< under guide_
-  Expectation expectation_;        ///< of expected_
-  Guide candidate_;                ///< a plan that has no rollout yet; no knots: none
-  int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted whose rollout without it did not collide
+  Forecast expected_;        ///< under guide_
+  Expectation expectation_;  ///< of expected_
+  Guide candidate_;          ///< a plan that has no rollout yet; no knots: none
+  bool misled_ = false;      ///< the arm would not reach the posture by the last candidate, though it hits nothing
+  int direct_in_a_row_ = 0;  ///< assessments since guide_ was adopted whose rollout without it did not collide
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 
