@@ -11,13 +11,12 @@ namespace sidestep {
 JointVector away_from_limits(const SidestepGains& gains, const LawInput& input);
 
 /// Our own law: the tool moves straight toward the target, at the target's velocity plus k_pos times the distance
-/// (clipped to v_max), through a damped inverse of the tool Jacobian in which
-/// 0.25 m/s of a prismatic joint weigh as much as 1 rad/s (Arm::joint_scale). `preferred_radps`, n x 1, acts in the
-/// null space. Of a full pose the rotation has the weight kTurnWeight_m, and where that inverse takes a joint beyond
-/// LawInput::sustainable, the joint velocities within it that follow the pose best replace its result: the other joints
-/// make up for a joint at its limit, as far as they can. The law does not consider obstacles; the
-/// shield does. Repulsion here was tried on the random scenes of host/campaign, which all have a solution: it only
-/// lowered the share of arrivals.
+/// (clipped to v_max), through a damped inverse of the tool Jacobian in which 0.25 m/s of a prismatic joint weigh as
+/// much as 1 rad/s (Arm::joint_scale). `preferred_radps`, n x 1, acts in the null space. Of a full pose the rotation
+/// has the weight kTurnWeight_m, and where that inverse takes a joint beyond LawInput::sustainable, the joint
+/// velocities within it that follow the pose best replace its result: the other joints make up for a joint at its
+/// limit, as far as they can. The law does not consider obstacles; the shield does. Repulsion here was tried on the
+/// random scenes of host/campaign, which all have a solution: it only lowered the share of arrivals.
 NominalCommand sidestep_law(const SidestepGains& gains, const LawInput& input, const JointVector& preferred_radps);
 
 }  // namespace sidestep

@@ -23,15 +23,11 @@ bool everything_rests(const Snapshot& now) {
   return now.tracking && is_at_rest(now.target) && std::none_of(now.nearby.obstacles.begin(), end, is_moving);
 }
 
-/// Whether the target is a pose that moves. A forecast does not know for how long, so that an arm is not led away from
-/// it. Tuned on the campaign's chase6d and follow6d; for moving positions (chase) it was not tried.
-bool is_moving_pose(const Snapshot& now) {
-  return now.tracking && now.target.tracks_orientation && !is_at_rest(now.target);
-}
-
-/// Whether a better guide need not be searched.
+/// Whether a better guide need not be searched. How long a pose will move is unknown, so that the arm is not led away
+/// from one that moves (measured on the campaign's chase6d and follow6d; not tried for positions).
 bool is_good(const Snapshot& now, const Forecast& forecast) {
-  return !forecast.collides && (is_moving_pose(now) || forecast.cost_s < kGoodCost_s);
+  const bool follows_pose = now.tracking && is_moving_pose(now.target);
+  return !forecast.collides && (follows_pose || forecast.cost_s < kGoodCost_s);
 }
 
 }  // namespace
@@ -46,7 +42,7 @@ void Foresight::reset(bool tracking) {
   calls_ = 0;
   searches_left_ = 0;
   faster_left_ = 0;
-  misled_ = false;
+  candidate_stuck_ = false;
   goal_.forget_goal();
 }
 
@@ -83,8 +79,8 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   goal_.examined(blocked);
   if (blocked) return {};
   Guide guide;
-  if (!misled_) guide = planner_.plan_to_target(now);
-  misled_ = false;
+  if (!candidate_stuck_) guide = planner_.plan_to_target(now);
+  candidate_stuck_ = false;
   if (guide.knots == 0) guide = tree_planner_.plan(now);
   goal_.searched(planner_.found_goal() || tree_planner_.has_goal(now));
   return guide;
@@ -102,7 +98,7 @@ void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
   const Forecast forecast = rollout_.run(now, candidate_);
   const bool is_adopted = forecast.cost_s < expected_.cost_s - worth_s;
   if (is_adopted) adopt(candidate_, forecast);
-  misled_ = now.target.is_posture() && !is_adopted && !forecast.arrives && !forecast.collides;
+  candidate_stuck_ = now.target.is_posture() && !is_adopted && !forecast.arrives && !forecast.collides;
   expectation_.set(now, expected_);
   candidate_ = Guide{};
 }

@@ -77,11 +77,11 @@ class Foresight {
   int searches_left_ = 0;  ///< after a forecast that was not good
   int faster_left_ = 0;    ///< calls that improve a good forecast for the present goal
   Guide guide_;
-  Forecast expected_;        ///< under guide_
-  Expectation expectation_;  ///< of expected_
-  Guide candidate_;          ///< a plan that has no rollout yet; no knots: none
-  bool misled_ = false;      ///< the arm would not reach the posture by the last candidate, though it hits nothing
-  int direct_in_a_row_ = 0;  ///< assessments since guide_ was adopted whose rollout without it did not collide
+  Forecast expected_;             ///< under guide_
+  Expectation expectation_;       ///< of expected_
+  Guide candidate_;               ///< a plan that has no rollout yet; no knots: none
+  bool candidate_stuck_ = false;  ///< the arm would not reach the posture by the last candidate, though it hits nothing
+  int direct_in_a_row_ = 0;       ///< assessments since guide_ was adopted whose rollout without it did not collide
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 

@@ -39,10 +39,9 @@ constexpr double kSqueezedShare = 1.5;
 
 constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 
-/// How much the time away from a target counts, 0 to 1; `moves`: it moved when the rollout began.
+/// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
 double away_share(const LinkPoses& poses, const Target& target, bool moves) {
-  return moves && target.tracks_orientation ? std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m)
-                                            : 1.0;
+  return moves ? std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m) : 1.0;
 }
 
 void advance(ObstacleSet& set, double dt_s) {
@@ -61,6 +60,10 @@ Target predicted_target(const Target& target, double after_s) {
 
 bool is_at_rest(const Target& target) {
   return target.velocity_mps.isZero(0.0) && target.angular_velocity_radps.isZero(0.0);
+}
+
+bool is_moving_pose(const Target& target) {
+  return target.tracks_orientation && !is_at_rest(target);
 }
 
 bool is_at(const LinkPoses& poses, const Target& target) {
@@ -156,7 +159,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     const LinkPoses poses = forward_kinematics(model_.arm, arm.position_rad, others);
     forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(model_.arm, arm.position_rad, target)
                                                               : is_at(poses, target));
-    away = away_share(poses, target, !is_at_rest(from.target));
+    away = away_share(poses, target, is_moving_pose(from.target));
     if (!forecast.arrives) forecast.cost_s += away * period_s;
     least_m = std::min(least_m, clearance_after(model_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, enough_m, allowance_m.data()));

@@ -58,6 +58,9 @@ Target predicted_target(const Target& target, double after_s);
 /// Whether the target has no velocity.
 bool is_at_rest(const Target& target);
 
+/// Whether the target has an orientation and a velocity.
+bool is_moving_pose(const Target& target);
+
 /// Whether the tool is within 10 mm of the target and, where the target tracks orientation, within 0.05 rad.
 bool is_at(const LinkPoses& poses, const Target& target);
 

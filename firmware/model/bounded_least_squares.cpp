@@ -41,19 +41,19 @@ class ActiveSet {
   /// Moves toward the best y up to the first bound, and fixes the unknown there. Returns false if there is none.
   bool move_free() {
     const JointVector best = best_of_free();
-    double step = 1.0;
+    double step = 1.0, bound = 0.0;
     Eigen::Index first = -1;
     for (Eigen::Index i = 0; i < y_.size(); ++i) {
       if (fixed_[i] || (best[i] >= lower_[i] && best[i] <= upper_[i])) continue;
-      const double bound = best[i] > upper_[i] ? upper_[i] : lower_[i];
-      const double share = (bound - y_[i]) / (best[i] - y_[i]);
-      if (share < step) step = share, first = i;
+      const double passed = best[i] > upper_[i] ? upper_[i] : lower_[i];
+      const double share = (passed - y_[i]) / (best[i] - y_[i]);
+      if (share < step) step = share, first = i, bound = passed;
     }
     for (Eigen::Index i = 0; i < y_.size(); ++i)
       if (!fixed_[i]) y_[i] = std::clamp(y_[i] + step * (best[i] - y_[i]), lower_[i], upper_[i]);
     if (first < 0) return false;
     fixed_[first] = true;
-    y_[first] = best[first] > upper_[first] ? upper_[first] : lower_[first];  // not rounded
+    y_[first] = bound;  // not rounded
     return true;
   }
 

@@ -151,7 +151,8 @@ def plot_clearances(axes, run):
         row = int(np.nanargmin(values_m)) if np.isfinite(values_m).any() else 0
         seen = values_m[row] < FAR_M and label not in known
         axes.plot(t, values_m, color=colour, label=label if seen else None)
-        known |= {label} if seen else set()
+        if seen:
+            known.add(label)
         if values_m[row] < 0.9 * FAR_M:
             names.add((t[row], values_m[row]), text, 1, fontweight="bold", path_effects=drawing.HALO,
                       arrowprops=dict(arrowstyle="-", color="0.4", linewidth=0.7))
