@@ -14,8 +14,12 @@ class ActiveSet {
  public:
   ActiveSet(const TaskJacobian& a, const TaskVector& b, double lambda, const JointVector& lower,
             const JointVector& upper)
-      : a_(a), b_(b), lambda_(lambda), lower_(lower), upper_(upper) {
-    y_ = JointVector::Zero(a.cols()).cwiseMax(lower).cwiseMin(upper);
+      : a_(a),
+        b_(b),
+        lambda_(lambda),
+        lower_(lower),
+        upper_(upper),
+        y_(JointVector::Zero(a.cols()).cwiseMax(lower).cwiseMin(upper)) {
     for (Eigen::Index i = 0; i < y_.size(); ++i) fixed_[i] = lower[i] >= upper[i];
   }
 

@@ -2,7 +2,8 @@
 """Run a scenario: one law in real time, then both laws in lockstep for a table and figures.
 
 The real-time run uses the default LCM network, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
-is that of the simulator: 0 if the scenario's expectations were met, 1 if not.
+is that of the simulator: 0 if the scenario's expectations were met, 1 if not. They are expectations of Sidestep: a run
+with the paper's law that does not meet them is shown, and the exit code is 0.
 """
 import argparse
 from pathlib import Path
@@ -57,6 +58,9 @@ def main():
     print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time with {runs.LAWS[arguments.law]}", flush=True)
     record = runs.RECORDS / f"{name}-realtime.csv"
     code = runs.execute(scenario_file, arguments.law, record, lockstep=False, log=record.with_suffix(".lcmlog"))
+    if code == runs.BROKEN and arguments.law == "paper":
+        print("The expectations above are those of Sidestep; the paper's law does not meet them.")
+        code = runs.HELD
     laws = runs.in_parallel(runs.lockstep_runs, [(scenario_file, law, runs.RECORDS / f"{name}-{law}.csv")
                                                  for law in runs.LAWS])
     for both in zip(*laws):
