@@ -33,6 +33,7 @@ struct CommandStream {
   JointVector velocity_radps;    ///< last commanded
   JointVector rate_radps;        ///< rate of the last commanded position: velocity plus correction
   JointVector braking_radps;     ///< bound of each joint's speed in braking_range(); size 0 outside of it
+  double braking_s = 0.0;        ///< the time since braking_range() began
   double stopped_s = -HUGE_VAL;  ///< when the driver last stopped the arm because cycles paused
 
   /// No stream runs, or the last command was at rest.
@@ -57,8 +58,11 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
 /// The part of next_range() in which the arm comes to rest within bounded time. The bound of every joint's speed starts
 /// at the speed of the fastest joint and falls with half the joint's acceleration limit. Within the bound a joint
 /// may also brake late, speed up or reverse, so that the shield can lead the arm past an obstacle while it stops: if
-/// every joint braked as fast as it can, the arm could swing into one. Updates stream.braking_radps.
-VelocityRange braking_range(const Model& model, const VelocityRange& range, CommandStream& stream);
+/// every joint braked as fast as it can, the arm could swing into one. In the first 0.6 s the bound is the velocity
+/// limit again after a cycle whose range was too small for the hard clearances (hard_violated): an obstacle may come
+/// through the place where the arm would rest. Updates stream.braking_radps and
+/// stream.braking_s.
+VelocityRange braking_range(const Model& model, const VelocityRange& range, bool hard_violated, CommandStream& stream);
 
 /// The output gate: limits the velocity to the range, brakes if it is not finite, and integrates it to the commanded
 /// position. Stores the command in the stream and sets the Limiting bits of the limits that acted.

@@ -1,4 +1,5 @@
 """Runs of build/controller with build/sim, and the results that they record."""
+import argparse
 import csv
 import random
 import re
@@ -284,6 +285,13 @@ def in_parallel(function, jobs, workers=2, done=lambda count, total: None):
             stopping.clear()
             raise
     return [future.result() for future in futures]
+
+
+def seconds(text):
+    """A duration on the command line: a whole number from 1, s."""
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"'{text}' must be a whole number from 1")
+    return int(text)
 
 
 def main_of(script):

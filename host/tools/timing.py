@@ -70,7 +70,7 @@ def show(name, loop, cyclictest):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=int, default=30, metavar="S",
+    parser.add_argument("--duration", type=runs.seconds, default=30, metavar="S",
                         help="duration of each run (default %(default)s)")
     parser.add_argument("--rate", type=float, default=100, metavar="HZ", help="control rate (default %(default)s)")
     arguments = parser.parse_args()
