@@ -6,8 +6,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_rad = 1e-9;
-constexpr double kLeastBraking = 0.5;      // share of the acceleration limit; with 0.2 tests/loop/braking touches more
-constexpr double kLongestRetreat_s = 0.6;  // of an arm that brakes
+constexpr double kLeastBraking = 0.5;  // share of the acceleration limit; with 0.2 tests/loop/braking touches more
+constexpr double kEvades_s = 0.5;      // before the bound falls; with 0 or 0.3 tests/loop/braking touches more
 
 /// The value of smaller magnitude, or 0 where the signs differ.
 double minmod(double a, double b) {
@@ -102,19 +102,13 @@ VelocityRange next_range(const Model& model, Mode mode, const CommandStream& str
                         stream.velocity_radps, period_s);
 }
 
-VelocityRange braking_range(const Model& model, const VelocityRange& range, bool hard_violated, CommandStream& stream) {
+VelocityRange braking_range(const Model& model, const VelocityRange& range, CommandStream& stream) {
   const double period_s = model.settings.period_s();
   const JointLimits& limits = model.arm.limits;
-  const JointVector& scale = model.arm.joint_scale;
-  JointVector& bound_radps = stream.braking_radps;
-  if (bound_radps.size() == 0) {
-    bound_radps =
-        limits.velocity_radps.cwiseMin(scale * stream.velocity_radps.cwiseQuotient(scale).cwiseAbs().maxCoeff());
-    stream.braking_s = 0.0;
-  }
-  if (hard_violated && stream.braking_s < kLongestRetreat_s) bound_radps = limits.velocity_radps;
   stream.braking_s += period_s;
-  bound_radps = (bound_radps - kLeastBraking * period_s * limits.acceleration_radps2).cwiseMax(0.0);
+  const double falls_s = std::max(0.0, stream.braking_s - kEvades_s);
+  const JointVector bound_radps =
+      (limits.velocity_radps - kLeastBraking * falls_s * limits.acceleration_radps2).cwiseMax(0.0);
   const JointVector fastest = brake(limits, stream.velocity_radps, period_s);
   return {fastest.cwiseMin(range.lower_radps.cwiseMax(-bound_radps)),
           fastest.cwiseMax(range.upper_radps.cwiseMin(bound_radps))};

@@ -32,8 +32,7 @@ struct CommandStream {
   JointVector position_rad;      ///< last commanded
   JointVector velocity_radps;    ///< last commanded
   JointVector rate_radps;        ///< rate of the last commanded position: velocity plus correction
-  JointVector braking_radps;     ///< bound of each joint's speed in braking_range(); size 0 outside of it
-  double braking_s = 0.0;        ///< the time since braking_range() began
+  double braking_s = 0.0;        ///< for how long the range has been braking_range()
   double stopped_s = -HUGE_VAL;  ///< when the driver last stopped the arm because cycles paused
 
   /// No stream runs, or the last command was at rest.
@@ -55,14 +54,12 @@ void start_stream(const Model& model, const ArmState& arm, const JointVector& ar
 /// the measured position. So the command of an arm that is held in place comes to rest.
 VelocityRange next_range(const Model& model, Mode mode, const CommandStream& stream, const ArmState& arm);
 
-/// The part of next_range() in which the arm comes to rest within bounded time. The bound of every joint's speed starts
-/// at the speed of the fastest joint and falls with half the joint's acceleration limit. Within the bound a joint
-/// may also brake late, speed up or reverse, so that the shield can lead the arm past an obstacle while it stops: if
-/// every joint braked as fast as it can, the arm could swing into one. In the first 0.6 s the bound is the velocity
-/// limit again after a cycle whose range was too small for the hard clearances (hard_violated): an obstacle may come
-/// through the place where the arm would rest. Updates stream.braking_radps and
-/// stream.braking_s.
-VelocityRange braking_range(const Model& model, const VelocityRange& range, bool hard_violated, CommandStream& stream);
+/// The part of next_range() in which the arm comes to rest within bounded time: after 0.5 s the bound of every joint's
+/// speed falls from its limit with half of its acceleration limit. Where nothing is near, the arm rests much earlier.
+/// Within the bound a joint may also brake late, speed up or reverse, so that the shield can lead the arm past an
+/// obstacle while it stops: if every joint braked as fast as it can, the arm could swing into one, or rest where one
+/// comes through. Adds a period to stream.braking_s.
+VelocityRange braking_range(const Model& model, const VelocityRange& range, CommandStream& stream);
 
 /// The output gate: limits the velocity to the range, brakes if it is not finite, and integrates it to the commanded
 /// position. Stores the command in the stream and sets the Limiting bits of the limits that acted.

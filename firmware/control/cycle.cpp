@@ -7,7 +7,6 @@
 #include "firmware/control/guided_law.h"
 #include "firmware/control/paper/paper_law.h"
 #include "firmware/control/posture_law.h"
-#include "firmware/control/shield/qp_objective.h"
 #include "firmware/control/shield/shield.h"
 #include "firmware/control/sidestep_law.h"
 
@@ -62,7 +61,6 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                          const JointVector& nominal_radps, double comfort, State& state, Report& report) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
-  state.hard_violated = false;
   const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
   if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
   const ShieldInput shield_input{model.arm,
@@ -81,7 +79,6 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
   if (safe.failed) report.limiting |= kLimitingShieldFailed;
   if (safe.links_limit) report.limiting |= kLimitingSelf;
   report.nearest_links = safe.nearest_links;
-  state.hard_violated = safe.hard_slack_mps > kNegligibleSlack_mps;
   state.evasion_radps = safe.plan.evading ? safe.plan.velocity_radps : JointVector();
   return safe.velocity_radps;
 }
@@ -133,11 +130,10 @@ bool may_evade(const Settings& settings, Mode mode, const InputStatus& status) {
 }
 
 /// The range of the coming period; `evades`: may_evade().
-VelocityRange range_of(const Model& model, Mode mode, bool evades, bool hard_violated, const ArmState& arm,
-                       CommandStream& stream) {
+VelocityRange range_of(const Model& model, Mode mode, bool evades, const ArmState& arm, CommandStream& stream) {
   VelocityRange range = next_range(model, mode, stream, arm);
-  if (!evades) return braking_range(model, range, hard_violated, stream);
-  stream.braking_radps = JointVector();
+  if (!evades) return braking_range(model, range, stream);
+  stream.braking_s = 0.0;
   return range;
 }
 
@@ -173,7 +169,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
 
   const Mode& mode = next.supervision.mode;  // latch_not_finite() may still change it
   const bool evades = may_evade(model.settings, mode, monitored.status);
-  const VelocityRange range = range_of(model, mode, evades, next.hard_violated, arm, next.stream);
+  const VelocityRange range = range_of(model, mode, evades, arm, next.stream);
   // An arm that is asked to stop comes to rest also where an obstacle is nearer than comfort.
   const bool keeps_comfort = evades && !monitored.status.stop;
   const double comfort = keeps_comfort ? comfort_weight(model.settings.shield, input, mode, guide != nullptr) : 0.0;

@@ -21,11 +21,10 @@ struct PlannedVelocity {
 
 /// What one cycle hands to the next, grouped by the part of the cycle that owns it.
 struct State {
-  Supervision supervision;     ///< supervisor.h
-  ArmMonitor arm_monitor;      ///< input_monitor.h
-  CommandStream stream;        ///< command_stream.h
-  JointVector evasion_radps;   ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
-  bool hard_violated = false;  ///< the shield could not meet its hard rows in the last cycle
+  Supervision supervision;    ///< supervisor.h
+  ArmMonitor arm_monitor;     ///< input_monitor.h
+  CommandStream stream;       ///< command_stream.h
+  JointVector evasion_radps;  ///< evasion chosen by the shield in the last cycle; size 0: none (shield.h)
   PlannedVelocity planned;
   GuideProgress guide_progress;  ///< guided_law.h
 };
