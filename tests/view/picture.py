@@ -22,7 +22,7 @@ SCENE = (0, 0, 760, 560)  # px, the section of the screenshot without the panel,
 SETTLE_S = 3.0  # until the page is drawn
 LEAST_PIXELS = {"arm": 4000, "obstacles": 1500, "target": 60}
 TARGET = ["-0.4", "-0.1", "0.6", "--circle", "0.3"]
-OBSTACLES = ["0.1,-0.35,0.75,0.08,-0.005,0.002,0", "-0.35,0.35,0.8,0.1,0,-0.005,0", "0.4,0.2,0.3,0.12,0,0,0"]
+OBSTACLES = ["0.5,-0.35,0.75,0.1,-0.06,0,0", "-0.35,0.75,0.8,0.12,0,-0.06,0", "0.4,0.2,0.3,0.12,0,0,0"]
 HUES_DEG = {"arm": [(200, 230), (15, 65)], "obstacles": [(290, 325)], "target": [(135, 165)]}
 FLAGS = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          "--window-size=1100,700", "--hide-scrollbars"]
