@@ -162,7 +162,8 @@ def checks(clearances, memory):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--duration", type=runs.seconds, default=3600, metavar="S", help="duration (default %(default)s)")
+    parser.add_argument("--duration", type=runs.seconds, default=3600, metavar="S",
+                        help="duration (default %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="seed of the random choices (default %(default)s)")
     arguments = parser.parse_args()
     shutil.rmtree(FOLDER, ignore_errors=True)

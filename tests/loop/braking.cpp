@@ -82,8 +82,6 @@ struct Course {
   double foreign_command_after_s;
 };
 constexpr double kNever_s = 1e9;
-constexpr int kStopPeriods = 150;
-constexpr int kTrackPeriods = 170;  // what comes at the arm after a stop is reached a little later by a tracking one
 constexpr Course kTrackOn{"tracking on", true, true, true, false, false, 0, kNever_s};
 constexpr Course kStops[] = {
     {"asked to stop", true, true, true, true, true, 0, kNever_s},
@@ -100,9 +98,8 @@ struct Outcome {
   double rest_s = kNever_s;  ///< until every joint rests
 };
 
-/// Least clearance in the coming `periods` on this course. The arm is ideal; without commands it stops at once.
-Outcome follow(const ClosedLoop& loop, const Course& course, const ObstacleSet& reported, ObstacleSet& now,
-               int periods) {
+/// Least clearance in the next 1.5 s on this course. The arm is ideal; without commands it stops at once.
+Outcome follow(const ClosedLoop& loop, const Course& course, const ObstacleSet& reported, ObstacleSet& now) {
   const Model& model = loop.model;
   const double period_s = model.settings.period_s(), start_s = loop.now_s();
   State state = loop.state;
@@ -113,7 +110,7 @@ Outcome follow(const ClosedLoop& loop, const Course& course, const ObstacleSet& 
   inputs.obstacles = {&reported, start_s, 1000000};
   now.count = reported.count;
   Outcome outcome;
-  for (int k = 1; k <= periods; ++k) {
+  for (int k = 1; k <= 150; ++k) {
     const double after_s = k * period_s, now_s = start_s + after_s;
     if (course.sends_arm_state) {
       sent_arm = arm;
@@ -176,13 +173,13 @@ void a_stop_touches_nothing_that_tracking_on_would_not(void**) {
       std::array<Outcome, std::size(kStops)> outcomes;
       bool touched = false;
       for (size_t i = 0; i < std::size(kStops); ++i) {
-        outcomes[i] = follow(loop, kStops[i], *loop.obstacles, *now, kStopPeriods);
+        outcomes[i] = follow(loop, kStops[i], *loop.obstacles, *now);
         least_m[i] = std::min(least_m[i], outcomes[i].least_m);
         if (outcomes[i].rest_s < kNever_s) slowest_s[i] = std::max(slowest_s[i], outcomes[i].rest_s);
         below[i] += outcomes[i].least_m < 0.01;
         touched |= outcomes[i].least_m < 0.0;
       }
-      if (!touched || follow(loop, kTrackOn, *loop.obstacles, *now, kTrackPeriods).least_m < 0.0) continue;
+      if (!touched || follow(loop, kTrackOn, *loop.obstacles, *now).least_m < 0.0) continue;
       for (size_t i = 0; i < std::size(kStops); ++i) {
         if (outcomes[i].least_m >= 0.0) continue;
         ++contacts[i];
