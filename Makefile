@@ -2,6 +2,8 @@
 
 BUILD    := build
 SCENARIO ?= paper-c
+# The name of a scene's file is understood as well.
+override SCENARIO := $(patsubst %.yaml,%,$(notdir $(SCENARIO)))
 FAMILY   ?= all
 COUNT    ?= 500
 SEED     ?= 1
@@ -55,7 +57,7 @@ HEADERS  := $(if $(filter yes,$(PRECOMPILED)),$(BUILD)/obj/precompiled.h)
 # is compiled; $(BUILD)/.compiled gets a line for each.
 count     = $(eval count := $(shell mkdir -p $(BUILD); : >$(BUILD)/.compiled; MAKEFLAGS= $(MAKE) -n $(MAKEOVERRIDES) \
               COUNTING=yes $(or $(MAKECMDGOALS),all) 2>/dev/null | grep -c '^echo c++'))$(count)
-progress  = @echo $(if $(COUNTING),c++,"[$$(echo >>$(BUILD)/.compiled; wc -l <$(BUILD)/.compiled)/$(count)] c++ $(1)")
+progress  = @echo $(if $(COUNTING),c++,"[$$(flock $(BUILD)/.compiled sh -c 'echo >>$(BUILD)/.compiled; wc -l <$(BUILD)/.compiled')/$(count)] c++ $(1)")
 
 sources   = $(filter-out %/main.cpp,$(shell find -H $(1) -name '*.cpp'))
 objects   = $(patsubst %.cpp,$(BUILD)/obj/%.o,$(1))
@@ -132,7 +134,7 @@ figures: all ## draw the figures of all one-arm scenarios with both laws, and th
 animation: all ## draw SCENARIO as an animated GIF of both laws in build/figures
 	@$(PYTHON) host/tools/animation.py host/scenarios/$(SCENARIO).yaml
 
-docs: all ## make the tables and pictures of README.md and docs/results.md that come from scenarios
+docs: all $(BUILD)/.python-view ## make the tables and pictures of README.md and docs/results.md that come from scenarios
 	@$(PYTHON) host/tools/docs.py
 
 timing: all $(READY).timing ## measure the real-time loop and cyclictest, idle and under CPU load, SECONDS (30) each
@@ -167,13 +169,13 @@ view-test: all $(READY).view-test $(BUILD)/.python-view ## check screenshots of 
 	@$(PYTHON) tests/view/picture.py
 	@$(PYTHON) tests/view/report_picture.py
 
-spy: $(BUILD)/types.jar ## start lcm-spy, which decodes the message types
-	@test -n "$$DISPLAY" || { echo "lcm-spy needs a display, DISPLAY is not set; without one: host/tools/watch.py"; exit 2; }
+spy: $(if $(DISPLAY),$(BUILD)/types.jar) ## start lcm-spy, which decodes the message types
+	@test -n "$$DISPLAY" || { echo "lcm-spy needs a display, DISPLAY is not set; without one: host/tools/watch.py" >&2; exit 2; }
 	@java -cp $(SPY):$< lcm.spy.Spy
 
-report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`)
+report: all $(BUILD)/.python-view ## write build/report.html about LOG (an lcm-logger log; default: of the last `make run`) of the arm of CONFIG
 	@test -n "$(LOG)" || { echo "no run is recorded yet: make run, or give a log with LOG="; exit 2; }
-	@$(PYTHON) host/tools/report.py $(LOG) -o $(BUILD)/report.html
+	@$(PYTHON) host/tools/report.py "$(LOG)" $(if $(CONFIG),--config "$(CONFIG)") -o $(BUILD)/report.html
 
 ##@ Checking
 

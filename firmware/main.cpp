@@ -6,6 +6,7 @@
 #include "firmware/base/command_line.h"
 #include "firmware/base/log.h"
 #include "firmware/io/config/config.h"
+#include "firmware/io/lcm/lcm_url.h"
 #include "firmware/io/loop/cycle_clock.h"
 #include "firmware/io/loop/loop.h"
 
@@ -40,7 +41,7 @@ void describe(sidestep::CommandLine& app, Arguments& arguments) {
       .type_name("HZ")
       .range(10.0, 2000.0);
   app.add_flag("--lockstep", arguments.lockstep, "one cycle for every arm state, on the arm's clock");
-  app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM's own)");
+  app.add_option("--lcm-url", arguments.lcm_url, "LCM network (default: LCM_DEFAULT_URL or LCM's own)");
   app.add_option("--urdf", arguments.overrides.urdf, "robot description, over the configuration's");
   app.add_option("--base", arguments.overrides.base, "base link, over the configuration's");
   app.add_option("--tip", arguments.overrides.tip, "tip link, the tool, over the configuration's");
@@ -56,6 +57,7 @@ int run(const Arguments& arguments) {
     config = load_config(arguments.config, arguments.overrides);
     if (arguments.lockstep && config.dialect->no_lockstep)
       throw std::runtime_error(std::string("--lockstep: not with ") + config.dialect->no_lockstep);
+    check_lcm_url(arguments.lcm_url);
   } catch (const std::exception& error) {
     std::cerr << "controller: " << error.what() << "\n";
     return 2;
@@ -69,7 +71,7 @@ int run(const Arguments& arguments) {
   const LoopSummary summary = loop(config, arguments.lcm_url, requests);
   const Reception& reception = summary.reception;
   log_info(fmt::format(
-      "{} cycles, {} skipped; {} messages rejected, {} incomplete; {} datagrams lost, {} malformed; times in\n{}",
+      "{} cycles, {} skipped; {} messages rejected, {} incomplete; {} datagrams lost, {} malformed\n{}",
       summary.timing.cycles, summary.timing.skipped_cycles, summary.rejected_messages, reception.incomplete_messages,
       reception.lost_datagrams, reception.malformed_datagrams, table(summary.timing)));
   return 0;

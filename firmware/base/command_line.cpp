@@ -1,5 +1,7 @@
 #include "firmware/base/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -32,7 +34,12 @@ Option Option::one_of(const std::vector<std::string>& values) {
 }
 
 Option Option::range(double lower, double upper) {
-  option_->check(CLI::Range(lower, upper));
+  const auto error_of = [lower, upper](const std::string& text) {
+    double value = 0.0;
+    const bool within = CLI::detail::lexical_cast(text, value) && !(value < lower || value > upper);
+    return within ? "" : fmt::format("Value {} not in range {:g} to {:g}", text, lower, upper);
+  };
+  option_->check(CLI::Validator(error_of, fmt::format("FLOAT in [{:g} - {:g}]", lower, upper)));
   return *this;
 }
 

@@ -18,10 +18,10 @@ Supervision start(const InputStatus& status, Mode mode, Fault fault) {
 
 const char* tracking_message(const InputStatus& status) {
   if (status.target_out_of_reach) return "tracking as near as the arm can: the target is out of reach";
-  if (status.posture_blocked)
-    return "tracking as near as the arm can: the posture is too near to an obstacle or to the arm itself";
   if (status.posture_outside_limits)
     return "tracking as near as the arm can: the posture is outside the position limits";
+  if (status.posture_blocked)
+    return "tracking as near as the arm can: the posture is too near to an obstacle or to the arm itself";
   return "tracking";
 }
 

@@ -151,7 +151,7 @@ int run(const Arguments& arguments) {
   const SelfPairs pairs = find_self_pairs(arm, ShieldSettings{}.self_clearance_m,
                                           srdf.empty() ? std::vector<LinkPair>() : disabled_collisions(srdf));
   fmt::print(
-      "{} pairs of shapes are kept apart from each other; they forbid {:.1f} % of the configurations without "
+      "pairs of shapes that are kept apart from each other: {}; they forbid {:.1f} % of the configurations without "
       "contact\n",
       pairs.kept.size(), 100.0 * pairs.forbidden_share);
   check_limits(arm);

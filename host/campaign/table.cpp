@@ -156,7 +156,7 @@ const Columns& smoothness_columns() {
 }
 
 std::string number(double value, int digits) {
-  if (std::isnan(value)) return "-";
+  if (!std::isfinite(value)) return "-";
   const std::string text = fmt::format("{:.{}f}", value, digits);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   return zero && text[0] == '-' ? text.substr(1) : text;

@@ -7,6 +7,7 @@
 
 #include "firmware/base/command_line.h"
 #include "firmware/base/realtime.h"
+#include "firmware/io/lcm/lcm_url.h"
 #include "host/sim/simulation.h"
 
 namespace {
@@ -34,7 +35,7 @@ void declare(sidestep::CommandLine& app, Options& options) {
                "print ids, shapes and kinds of the scenario's obstacles and of the parts of its people, and exit");
   app.add_flag("--lockstep", options.lockstep,
                "run on the arm's clock: deterministic, as fast as possible (the controller also needs --lockstep)");
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider (default: LCM_DEFAULT_URL or LCM's own)").type_name("URL");
+  app.add_option("--lcm-url", options.lcm_url, "LCM network (default: LCM_DEFAULT_URL or LCM's own)").type_name("URL");
   app.add_option("--log", options.log_file, "write all messages to this log, in lcm-logger's format").type_name("FILE");
   app.add_option("--csv", options.csv_file,
                  "write one row per control period to this file; with several arms one file each, with the arm's name "
@@ -98,6 +99,7 @@ int list_obstacles(const std::string& file) {
 }
 
 int simulate(const Options& options) {
+  sidestep::check_lcm_url(options.lcm_url);
   std::vector<Run> runs;
   std::vector<sidestep::Channels> channels;
   for (const Scenario& scenario : load_scenario(options.scenario)) {

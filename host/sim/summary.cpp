@@ -118,8 +118,9 @@ std::string Summary::text(const Scenario& scenario) const {
   const std::string links =
       self_m_ < kNothingNear ? metres(self_m_) + "   " + nearest_links_ : fmt::format("{:g} m or more", kSelfRange_m);
   text += fmt::format("  min between links         {}\n", links);
-  text += fmt::format("  min centre to axis        {}{}\n", metres(axis_distance_m_),
-                      paper_figure(scenario.published.axis_distance_m));
+  if (scenario.published.axis_distance_m)
+    text += fmt::format("  min centre to axis        {}{}\n", metres(axis_distance_m_),
+                        paper_figure(scenario.published.axis_distance_m));
   if (scenario.world.target)
     text += fmt::format("  final target distance     {:.6f} m{}\n", final_distance_m_,
                         paper_figure(scenario.published.final_distance_m));

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "firmware/io/lcm/lcm_url.h"
 #include "host/sim/clock.h"
 
 namespace sidestep::sim {
@@ -199,10 +200,8 @@ struct SimWire::Network {
 
   Network(const std::string& url, const std::string& log_file, const std::vector<Channels>& arms)
       : lcm(url), channels(arms) {
-    if (!lcm.good()) {
-      throw std::runtime_error("--lcm-url: cannot open " + (url.empty() ? "LCM's default" : url) +
-                               " (no multicast route?)");
-    }
+    if (!lcm.good())
+      throw std::runtime_error("LCM network " + lcm_url_or_default(url) + ": cannot be used (no multicast route?)");
     if (!log_file.empty()) log = std::make_unique<lcm::LogFile>(log_file, "w");
     if (log && !log->good()) throw std::runtime_error(log_file + ": cannot be written");
     for (size_t arm = 0; arm < channels.size(); ++arm) {

@@ -6,6 +6,7 @@ The runs are in lockstep, so that the same version draws the same picture. It is
 import argparse
 from pathlib import Path
 
+import environment
 import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image

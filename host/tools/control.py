@@ -7,7 +7,7 @@ stop    the arm brakes to rest and the controller ends; it has to be started aga
 """
 import argparse
 
-from wire import add_lcm_url, command_line, control_t, finite, publish, publish_once
+from wire import add_lcm_url, argument, command_line, control_t, finite, publish, publish_once
 
 COMMANDS = {"pause": control_t.PAUSE, "resume": control_t.RESUME, "stop": control_t.STOP}
 
@@ -15,14 +15,14 @@ COMMANDS = {"pause": control_t.PAUSE, "resume": control_t.RESUME, "stop": contro
 def share(text):
     value = finite(text)
     if not 0 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"{text} is not from 0 to 1")
+        raise ValueError(f"{text.strip()} is not from 0 to 1")
     return value
 
 
 def parsed():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=COMMANDS)
-    parser.add_argument("--speed", type=share, default=1.0, metavar="SHARE",
+    parser.add_argument("--speed", type=argument(share), default=1.0, metavar="SHARE",
                         help="0 to 1: of the speed with which the arm follows its target (default 1)")
     parser.add_argument("--keep", action="store_true",
                         help="repeat it until Ctrl-C, for a controller that needs an operator (timeouts.control_s)")

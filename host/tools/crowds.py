@@ -3,7 +3,7 @@ import csv
 import math
 import random
 
-from wire import finite, obstacle_t
+from wire import finite, obstacle_id, obstacle_t
 
 
 def obstacle(number, shape, size, position, velocity, about_y=(0.0, 0.0)):
@@ -56,19 +56,13 @@ def from_csv(file):
                     raise ValueError("too few columns")
                 t_s, *centre = (finite(row[name]) for name in ("t_s", "x_m", "y_m", "z_m"))
                 point = [*centre, radius(row["radius_m"])]
-                tracks.setdefault(id_of(row["id"]), []).append((t_s, point))
+                tracks.setdefault(obstacle_id(row["id"]), []).append((t_s, point))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{file}, line {rows.line_num}: {error}") from None
     if not tracks:  # an empty set would report to the controller that there are no obstacles
         raise ValueError(f"{file}: no rows")
     tracks = {number: sorted(track) for number, track in tracks.items()}
     return lambda t: [sphere(number, *on_track(track, t)) for number, track in tracks.items()]
-
-
-def id_of(text):
-    if not -2**31 <= (number := int(text)) < 2**31:
-        raise ValueError(f"id {number} has more than 32 bits")
-    return number
 
 
 def on_track(track, t):

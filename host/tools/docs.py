@@ -3,19 +3,23 @@
 
 A table or sentence stands between the lines `<!-- make docs: NAME -->` and `<!-- end -->`. A picture has the results
 that are printed in it as metadata. With --check nothing is written: every difference is printed, and the exit code is 1
-if there is one.
+if there is one. The picture of the live view has the key of its colours as metadata; tests/view/picture.py makes it.
 """
 import argparse
 import difflib
 import re
 import sys
 import textwrap
+from pathlib import Path
 
 import numpy as np
 import yaml
 from PIL import Image
 
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "host/view"))
 import animation
+import panel
 import play
 import plots
 import runs
@@ -25,6 +29,7 @@ PAGES = [runs.ROOT / "README.md", runs.ROOT / "docs/results.md"]
 PICTURES = {runs.ROOT / "host/scenarios/closing-gap.gif": ("closing-gap", animation.save),
             runs.ROOT / "host/scenarios/closing-gap.png": ("closing-gap", plots.comparison),
             runs.ROOT / "host/scenarios/paper-c.png": ("paper-c", plots.comparison)}
+VIEW, KEY = runs.ROOT / "host/scenarios/view.png", "key"
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
             "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
@@ -160,6 +165,12 @@ def numbers_of(picture):
         return []
 
 
+def key_of(picture):
+    """The key of the colours that a picture of the view shows, as panel.key() made it."""
+    with Image.open(picture) as image:
+        return image.info.get(KEY, "")
+
+
 def differences(name, there, now):
     return list(difflib.unified_diff(there, now, f"{name}, there", f"{name}, this version", lineterm="", n=0))
 
@@ -185,9 +196,10 @@ def main():
         different += differences(runs.shown(picture), numbers_of(picture), plots.numbers(both))
         if not check:
             draw(both, picture)
+    different += differences(runs.shown(VIEW), [key_of(VIEW)], [panel.key()])
     print("\n".join(different) if different else "everything is up to date")
     if check and different:
-        print("run make docs", file=sys.stderr)
+        print("run make docs; the picture of the view: make view-test, and copy it from build/figures", file=sys.stderr)
     return int(check and bool(different))
 
 

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+import environment
 import plots
 import runs
 import tradeoff

@@ -87,7 +87,9 @@ def run_of(file, arms, one, config):
     if not rows and next(iter(lcm.EventLog(str(file))), None) is None:
         raise NoRun(f"{file}: not an LCM log, or an empty one")
     if not rows:
-        raise NoRun(f"{file}: no CONTROLLER_STATUS after an ARM_STATE of {one.joints} joints")
+        raise NoRun(f"{file}: nothing of the controller of {runs.shown(Path(config).absolute())}, no "
+                    f"{one.names['CONTROLLER_STATUS']} after an {one.names['ARM_STATE']} of {one.joints} joints; make "
+                    "report CONFIG=FILE names another configuration")
     joints = range(1, one.joints + 1)
     names = ["t_s", *FIELDS.values(), "silent", *(f"q{i}_rad" for i in joints), *(f"qd{i}_radps" for i in joints)]
     columns = dict(zip(names, np.array(rows, float).T))

@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Run a scenario: one law in real time, then both laws in lockstep for a table and figures.
 
-The real-time run uses the default LCM network, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
+The real-time run uses the default LCM network, on which no other controller may run, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
 is that of the simulator: 0 if the scenario's expectations were met, 1 if not. They are expectations of Sidestep: a run
 with the paper's law that does not meet them is shown, and the exit code is 0.
 """
 import argparse
 from pathlib import Path
 
+import environment
 import numpy as np
 
+import network
 import plots
 import runs
 import verdict
@@ -40,6 +42,7 @@ def table(paper, sidestep):
     hidden = {TO_OTHER_ARMS} if "arms" not in paper.scenario else set()
     if not published:
         hidden.add(TO_AXIS)
+        lines = [(name, *results) for name, _, *results in lines]
     lines = [line for line in lines if line[0] not in hidden]
     widths = [max(map(len, cells)) for cells in zip(*lines)]
     return "\n".join(" | ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() for line in lines)
@@ -53,8 +56,8 @@ def main():
     scenario_file = arguments.scenario.absolute()
     scenario, name = runs.load_scenario(scenario_file), scenario_file.stem
 
-    if "duration_s" not in scenario:
-        raise runs.RunFailed(f"{name} has no end: make play, or make view SCENARIO={name}")
+    runs.check_ends(scenario_file, scenario)
+    network.check_free()
     print(f"{scenario['title']}: {scenario['duration_s']:g} s in real time with {runs.LAWS[arguments.law]}", flush=True)
     record = runs.RECORDS / f"{name}-realtime.csv"
     code = runs.execute(scenario_file, arguments.law, record, lockstep=False, log=record.with_suffix(".lcmlog"))

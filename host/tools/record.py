@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 
+import environment
 import lcm
 
 import wire

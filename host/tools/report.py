@@ -40,7 +40,7 @@ def page(log, robots):
     """The HTML. robots: configuration -> (URDF, base, tip) of each arm."""
     arms = [ArmView(config, robot, config.stem if len(robots) > 1 else "") for config, robot in robots.items()]
     if not log.is_file():
-        raise logs.NoRun(f"{log}: no such file")
+        raise logs.NoRun(f"{log}: {'a folder' if log.is_dir() else 'no such file'}")
     found = [logs.run_of(log, arms, one, config) for one, config in zip(arms, robots)]
     import panel
     import recording

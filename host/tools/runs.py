@@ -12,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import NamedTuple
 
+import environment
 import numpy as np
 import yaml
 
@@ -24,6 +25,8 @@ RECORDS = BUILD / "runs"
 LAWS = {"paper": "the paper's law", "sidestep": "Sidestep"}
 TASK_LETTERS = 150
 HELD, BROKEN = 0, 1  # exit codes of a completed simulation: its expectations were met, or not
+
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 stopping = threading.Event()
 
@@ -89,6 +92,13 @@ def scenario_names():
 def ending_scenarios():
     """The names of the scenarios that end by themselves."""
     return [name for name in scenario_names() if "duration_s" in load(ROOT / f"host/scenarios/{name}.yaml")]
+
+
+def check_ends(file, scenario):
+    """RunFailed for a scenario that runs until it is interrupted."""
+    if "duration_s" not in scenario:
+        name = Path(file).stem
+        raise RunFailed(f"{name} has no end: make play, or make view SCENARIO={name}")
 
 
 def load_scenario(file):
@@ -225,6 +235,8 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
     is then its verdict. RunFailed if a process fails.
     """
     scenario = load_scenario(scenario_file)
+    if lockstep:
+        check_ends(scenario_file, scenario)
     if log:
         verdict_file(log).unlink(missing_ok=True)
     record.parent.mkdir(parents=True, exist_ok=True)
@@ -294,9 +306,17 @@ def seconds(text):
     return int(text)
 
 
+def interrupt(*_):
+    """Ends the script once: a second signal, as of make or of an impatient hand, does not interrupt the clean-up."""
+    for number in STOPS:
+        signal.signal(number, lambda *_: None)
+    raise KeyboardInterrupt
+
+
 def main_of(script):
-    """Run a script's main function and exit with its return value. Ctrl-C and SIGTERM stop its processes."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    """Run a script's main function and exit with its return value. Ctrl-C, SIGTERM and SIGHUP stop its processes."""
+    for number in STOPS:
+        signal.signal(number, interrupt)
     try:
         sys.exit(script())
     except RunFailed as failure:

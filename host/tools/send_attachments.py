@@ -8,7 +8,7 @@ left.
 """
 import argparse
 
-from wire import add_lcm_url, attachments_t, command_line, finite, obstacle_t, publish_once
+from wire import add_lcm_url, argument, attachments_t, command_line, finite, obstacle_id, obstacle_t, publish_once
 
 SIZES = {"sphere": (obstacle_t.SPHERE, "RADIUS"), "capsule": (obstacle_t.CAPSULE, "RADIUS,LENGTH"),
          "box": (obstacle_t.BOX, "X,Y,Z"), "cylinder": (obstacle_t.CYLINDER, "RADIUS,HEIGHT")}
@@ -24,7 +24,7 @@ def held(text):
         if len(sizes) != len(names.split(",")) or len(place) != 3 or min(sizes) < 0:
             raise ValueError
         made = obstacle_t()
-        made.id, made.shape = int(number), shape
+        made.id, made.shape = obstacle_id(number), shape
         made.size, made.position, made.quaternion = [*sizes, 0.0, 0.0][:3], place, [1.0, 0.0, 0.0, 0.0]
         return made
     except (KeyError, ValueError) as error:
@@ -39,7 +39,7 @@ def parsed():
     parser.add_argument("--hold", type=held, action="append", default=[], metavar="ID:SHAPE:SIZES@X,Y,Z",
                         help="a shape with its centre in the tool's frame, m; capsules and cylinders lie along z "
                              "(repeatable)")
-    parser.add_argument("--allow", type=int, nargs="+", default=[], metavar="ID",
+    parser.add_argument("--allow", type=argument(obstacle_id), nargs="+", default=[], metavar="ID",
                         help="obstacles that the tool and what it holds may touch")
     add_lcm_url(parser)
     arguments = parser.parse_args(command_line())

@@ -11,7 +11,8 @@ import crowds
 import wire
 from errors import reason
 
-MOST = 4096  # the controller rejects a message with more obstacles
+MOST = 4096    # the controller rejects a message with more obstacles
+MOST_M = 1000  # ... or with a larger coordinate, m, or velocity, m/s
 
 
 def send(crowd, lcm_url):
@@ -30,6 +31,8 @@ def numbers(text):
     if len(words) not in (4, 7):
         raise ValueError("a sphere is four numbers, or seven with the velocity: x,y,z,radius[,vx,vy,vz]")
     centre, velocity = ([wire.finite(word) for word in part] for part in (words[:3], words[4:]))
+    if max(map(abs, centre + velocity)) > MOST_M:
+        raise ValueError(f"{text.strip()}: a number is beyond {MOST_M} m or m/s, which the controller rejects")
     return [*centre, crowds.radius(words[3]), *(velocity or [0.0] * 3)]
 
 
@@ -69,6 +72,8 @@ def main():
         crowd = crowd_of(arguments)
         if (most := len(crowd(0.0))) > MOST:
             raise ValueError(f"{most} obstacles are more than the {MOST} that a message may contain")
+    except UnicodeDecodeError:
+        parser.error(f"{arguments.csv}: not a text file")
     except KeyError as error:
         parser.error(f"{arguments.csv}: no column {error}")
     except (OSError, TypeError, ValueError) as error:

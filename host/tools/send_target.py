@@ -10,9 +10,10 @@ import curses
 import math
 import sys
 
-from wire import add_lcm_url, command_line, finite, joint_target_t, publish, target_t
+from wire import add_lcm_url, argument, command_line, finite, joint_target_t, publish, target_t
 
 STEP_M = 0.02  # for each key press
+MOST = 1000    # of a position, m, and of a velocity, m/s: the controller rejects a message with more
 KEYS = {curses.KEY_LEFT: (0, -1), curses.KEY_RIGHT: (0, 1), curses.KEY_DOWN: (1, -1), curses.KEY_UP: (1, 1),
         ord("-"): (2, -1), ord("+"): (2, 1)}
 
@@ -69,9 +70,8 @@ def keys(screen, position_m):
 
 
 def positive(text):
-    value = float(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    if (value := finite(text)) <= 0:
+        raise ValueError(f"{text.strip()} is not above 0")
     return value
 
 
@@ -79,24 +79,32 @@ def joints(text):
     return [finite(number) for number in text.split(",")]
 
 
+def coordinate(text):
+    if abs(value := finite(text)) > MOST:
+        raise ValueError(f"{text.strip()} is beyond {MOST} m or m/s, which the controller rejects")
+    return value
+
+
 def parsed():
     parser = argparse.ArgumentParser(description=__doc__, usage="%(prog)s [-h] [options] X Y Z [VX VY VZ]\n"
                                      "       %(prog)s [--lcm-url URL] --joints Q1,Q2,...")
-    parser.add_argument("numbers", type=finite, nargs="*", metavar="N",
+    parser.add_argument("numbers", type=argument(coordinate), nargs="*", metavar="NUMBER",
                         help="position of the target or centre of its path, m; then velocity, m/s (default 0)")
     path = parser.add_mutually_exclusive_group()
-    path.add_argument("--circle", type=positive, metavar="RADIUS", help="move on a horizontal circle, radius in m")
-    path.add_argument("--figure-eight", type=positive, metavar="RADIUS",
+    path.add_argument("--circle", type=argument(positive), metavar="RADIUS", help="move on a horizontal circle, radius in m")
+    path.add_argument("--figure-eight", type=argument(positive), metavar="RADIUS",
                       help="move on a horizontal figure eight, half its length in m")
-    path.add_argument("--joints", type=joints, metavar="Q1,Q2,...",
+    path.add_argument("--joints", type=argument(joints), metavar="Q1,Q2,...",
                       help="the positions of all joints, rad, or m for a prismatic joint, in place of a point")
     path.add_argument("--keys", action="store_true", help="move with the arrow keys (x, y) and with + and - (z)")
-    parser.add_argument("--period", type=positive, default=8.0, metavar="S",
+    parser.add_argument("--period", type=argument(positive), default=8.0, metavar="S",
                         help="period of the circle or figure eight (default %(default)g)")
     add_lcm_url(parser)
     arguments = parser.parse_args(command_line())
     if arguments.joints and arguments.numbers:
         parser.error("expected no point beside --joints")
+    if len(arguments.numbers) == 6 and (arguments.circle or arguments.figure_eight or arguments.keys):
+        parser.error("expected no velocity beside --circle, --figure-eight or --keys")
     if not arguments.joints and len(arguments.numbers) not in (3, 6):
         parser.error("expected three numbers (position) or six (position and velocity)")
     if arguments.keys and not (sys.stdin.isatty() and sys.stdout.isatty()):

@@ -15,6 +15,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import environment
 import numpy as np
 import yaml
 

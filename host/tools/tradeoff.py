@@ -9,6 +9,7 @@ import csv
 import functools
 import hashlib
 
+import environment
 import numpy as np
 import yaml
 

@@ -52,6 +52,13 @@ def record_of(run, log):
     return run._replace(columns=columns | {"t_s": columns["t_s"] + run.columns["t_s"][tracking[0]]})
 
 
+def measured_by(record):
+    """Who measured. The times in a report are those of the log; the simulator's own begin when the arm tracks."""
+    if not record:
+        return "the controller, which knows only what it receives"
+    return f"the simulator, whose own times begin {record.columns['t_s'][0]:.2f} s later"
+
+
 def rows(run, log):
     """[(name, text)] of a logged run, logs.run_of()."""
     file, record = runs.verdict_file(log), record_of(run, log)
@@ -63,4 +70,4 @@ def rows(run, log):
     return [("expectations of the scenario", file.read_text() if file.is_file() else "not known"),
             ("faults", faults(run)), ("contact", touches), ("least clearance", least(known["t_s"], clearance_m)),
             *links, ("distance to the target at the end", at_the_end(known["target_distance_m"])),
-            ("measured by", "the simulator" if record else "the controller, which knows only what it receives")]
+            ("measured by", measured_by(record))]

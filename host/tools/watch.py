@@ -30,14 +30,14 @@ def bar(value, full, width=30):
 
 
 def speed_text(status):
-    """The operator's speed; empty at full speed, and while paused: the message says so."""
-    return f"at {status.speed_scale:.0%} speed" if 0 < status.speed_scale < 1 else ""
+    """The operator's speed; empty at full speed, and where the message says that the arm is paused."""
+    return "" if "paused" in status.message or status.speed_scale >= 1 else f"at {status.speed_scale:.0%} speed"
 
 
 def foresight_text(status):
     """The foresight status; empty while the law needs no guide (DIRECT)."""
     if status.foresight == status.GUIDED:
-        return f"guided for the next {status.guide_horizon:.1f} s"
+        return f"guided for the next {status.guide_horizon:.1f} s" if status.guide_horizon > 0 else "guided, at its end"
     return "no path known" if status.foresight == status.WAITING else ""
 
 
@@ -115,7 +115,8 @@ def brief(status, ages_s):
     parts = [f"{wire.MODES.get(status.mode, status.mode):5}", f"target {target_text(status)}",
              f"clearance {clearance_text(status, ages_s)}", f"cycle {status.cycle_time * 1e6:.0f} us",
              self_text(status) if status.limiting & status.LIMITING_SELF else "",
-             f"fault: {fault_text(status)}" if status.fault else "", foresight_text(status), speed_text(status), message_text(status)]
+             f"fault: {fault_text(status)}" if status.fault else "", foresight_text(status), speed_text(status),
+             "" if status.message.startswith("fault: ") else message_text(status)]
     return "  ".join(filter(None, parts))
 
 

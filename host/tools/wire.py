@@ -1,5 +1,7 @@
 """LCM for the scripts: Sidestep's channels, their message types, and the latest message of each channel."""
+import argparse
 import math
+import os
 import re
 import select
 import struct
@@ -7,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import environment
 import lcm
 
 # Appended, so that pydrake's own modules come first. Installed scripts find the types in share/sidestep/python.
@@ -34,7 +37,9 @@ def connect(lcm_url):
     try:
         return lcm.LCM(lcm_url)
     except RuntimeError:
-        sys.exit(f"cannot use the LCM network '{lcm_url or 'default'}' (is there a multicast route?)")
+        of_environment = os.environ.get("LCM_DEFAULT_URL") if not lcm_url else None
+        name = f"{of_environment} of LCM_DEFAULT_URL" if of_environment else lcm_url or "LCM's default"
+        sys.exit(f"cannot use the LCM network {name}: not of the form udpm://ADDRESS:PORT?ttl=N, or no multicast route")
 
 
 def handle_messages(network, limit_s=None):
@@ -69,9 +74,29 @@ def publish(channel, message_at, lcm_url):
 
 def finite(text):
     """The finite number that the text gives; ValueError otherwise."""
-    if not math.isfinite(value := float(text)):
-        raise ValueError(f"{text} is not a finite number")
-    return value
+    try:
+        if math.isfinite(value := float(text)):
+            return value
+    except ValueError:
+        pass
+    raise ValueError(f"'{text.strip()}' is not a finite number")
+
+
+def obstacle_id(text):
+    """The id of an obstacle, a number of 32 bits; ValueError otherwise."""
+    if not -2**31 <= (number := int(text)) < 2**31:
+        raise ValueError(f"id {number} has more than 32 bits")
+    return number
+
+
+def argument(read):
+    """The type of an argument for argparse, which then shows the text of the ValueError of read(text)."""
+    def reader(text):
+        try:
+            return read(text)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+    return reader
 
 
 def command_line():

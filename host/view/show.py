@@ -13,6 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "host/tools"))
+import network
 import runs
 from errors import reason
 from view import add_port
@@ -70,6 +71,7 @@ def main():
     scenario_file = arguments.scenario.absolute()
     scenario = runs.load_scenario(scenario_file)
     refuse_taken(arguments.port)
+    network.check_free()
     print(f"{scenario['title']}: open http://localhost:{arguments.port} (Ctrl-C ends)", flush=True)
     if lacks_target(scenario):
         print(COMMANDS.format(root=ROOT), flush=True)

@@ -62,6 +62,15 @@ void a_taken_port_is_refused_before_anything_starts(void**) {
 void the_commands_that_make_play_names_run(void**) {
   passes("play_commands");
 }
+void a_script_that_another_python_starts_finds_its_packages(void**) {
+  passes("another_python");
+}
+void a_run_beside_another_controller_is_refused(void**) {
+  passes("busy_network");
+}
+void a_second_signal_leaves_no_process_behind(void**) {
+  passes("second_signal");
+}
 void messages_that_came_earlier_are_received_without_time_left(void**) {
   passes("late_receiver");
 }
@@ -98,6 +107,9 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_script_that_another_python_starts_finds_its_packages, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_run_beside_another_controller_is_refused, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_second_signal_leaves_no_process_behind, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(messages_that_came_earlier_are_received_without_time_left,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,

@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 from unittest import mock
@@ -26,10 +27,12 @@ import control
 import crowds
 import geometry
 import logs
+import network
 import panel
 import record
 import report
 import runs
+import send_attachments
 import send_obstacles
 import send_target
 import show
@@ -309,7 +312,11 @@ def refusals():
                 (control, ["halt"], 2, "invalid choice: 'halt'"),
                 (send_target, ["1", "0", "1", "--keys"], 2, "needs a terminal"),
                 (send_target, ["1", "0", "1", "--joints", "0,0"], 2, "no point beside --joints"),
-                (send_target, ["--joints", "0,nan"], 2, "invalid joints value: '0,nan'"),
+                (send_target, ["--joints", "0,nan"], 2, "'nan' is not a finite number"),
+                (send_target, ["1", "1e300", "0"], 2, "1e300 is beyond 1000 m or m/s"),
+                (send_target, ["1", "0", "0", "1", "0", "0", "--circle", "1"], 2, "no velocity beside --circle"),
+                (send_obstacles, ["2000,0,0,.1"], 2, "a number is beyond 1000 m or m/s"),
+                (send_attachments, ["--allow", str(2**31)], 2, "has more than 32 bits"),
                 (send_target, [], 2, "expected three numbers"),
                 (record, [log, "--channels", "(", "--lcm-url", runs.private_url()], 1, "subscribe to '('"),
                 (report, [log, "--config", nonsense], 1, f"{nonsense}: mapping"),
@@ -351,16 +358,73 @@ def taken_port():
 
 def play_commands():
     """Each command that `make play` names runs and says something at once. --keys needs a terminal: without it."""
-    network = os.environ | {"LCM_DEFAULT_URL": runs.private_url()}
+    alone = os.environ | {"LCM_DEFAULT_URL": runs.private_url()}
     commands = [line.split("#")[0].split() for line in show.COMMANDS.splitlines() if "host/tools" in line]
     assert len(commands) == 7, commands
     for command in commands:
         words = [word for word in command if word != "--keys"]
-        process = subprocess.Popen(words, cwd=ROOT, env=network, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(words, cwd=ROOT, env=alone, stdout=subprocess.PIPE, text=True)
         first = process.stdout.readline()
         process.kill()
         process.wait()
         assert first.startswith(("sending ", "waiting for CONTROLLER_STATUS")), (words, first)
+
+
+def another_python():
+    """A script that a Python without its packages starts goes on with that of build/venv."""
+    done = subprocess.run(["/usr/bin/python3", ROOT / "host/tools/send_target.py", "--help"], capture_output=True,
+                          text=True)
+    assert done.returncode == 0 and done.stdout.startswith("usage: send_target.py"), done
+
+
+def busy_network():
+    """A run is refused on a network with another controller, and says which other programs send."""
+    url = runs.private_url()
+    for kind, channel in (("TARGET", "TARGET"), ("CONTROLLER_STATUS", "LEFT_STATUS")):
+        assert network.heard(url) == {}
+        sender = threading.Thread(target=wire.publish_once, args=(channel, wire.TYPES[kind](), url))
+        threading.Timer(0.1, sender.start).start()
+        found = network.heard(url)
+        sender.join()
+        assert found == {kind: channel}, found
+        with mock.patch.object(network, "heard", lambda: dict(found)), \
+                contextlib.redirect_stdout(io.StringIO()) as output:
+            try:
+                network.check_free()
+                said = output.getvalue()
+            except runs.RunFailed as failure:
+                said = str(failure)
+        assert said.startswith("note: another program sends on TARGET" if kind == "TARGET" else
+                               "another controller runs on this LCM network (it sends on LEFT_STATUS)"), said
+
+
+TWO_ARMS = """import sys
+sys.path.insert(0, "host/tools")
+import runs
+runs.main_of(lambda: runs.execute(runs.ROOT / "host/scenarios/two-arms.yaml", "sidestep", runs.RECORDS / "signals.csv",
+                                  lcm_url=sys.argv[1], lockstep=False))"""
+
+
+def second_signal():
+    """Two signals in short succession leave no controller and no simulator behind."""
+    url = runs.private_url()
+
+    def running():
+        return subprocess.run(["pgrep", "-c", "-f", f"^/.*/build/(controller|sim) .*{re.escape(url)}"],
+                              capture_output=True, text=True).stdout.strip()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        script = subprocess.Popen([sys.executable, "-c", TWO_ARMS, url], cwd=ROOT, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 20
+        while running() != "3" and time.monotonic() < deadline:
+            time.sleep(0.02)
+        assert running() == "3", running()
+        time.sleep(1.0)  # they run
+        script.send_signal(number)
+        time.sleep(0.03)
+        script.send_signal(number)
+        assert script.wait(20) == 130
+        assert running() == "0", running()
 
 
 def late_receiver():
@@ -408,9 +472,12 @@ def watched_texts():
     for ages, text in (({}, "none received"), ({"TARGET": 0.1, "ARM_STATE": 0.0}, "of the tool"),
                        ({"TARGET": 0.3, "JOINT_TARGET": 0.1}, "a posture")):
         assert watch.goal_text(ages) == text and f"target: {text}" in "\n".join(watch.lines(latest, ages))
-    for scale, text in ((1.0, ""), (0.25, "at 25% speed"), (0.0, "")):
+    for scale, text in ((1.0, ""), (0.25, "at 25% speed"), (0.0, "at 0% speed")):
         status.speed_scale = scale
         assert watch.speed_text(status) == text and text in watch.brief(status, {})
+    status.message = "holding: paused"
+    assert watch.speed_text(status) == ""
+    status.message = ""
     status.nearest_link = "hand"
     for number, text in ((-1, ""), (7, "hand and obstacle 7"), (-3, "hand and surroundings[1]"),
                          (-20004, "hand and link 4 of another arm")):
@@ -432,6 +499,7 @@ CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, ne
                                               panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
+                                              another_python, busy_network, second_signal,
                                               late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":

@@ -9,11 +9,14 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 from selenium import webdriver
 from selenium.common.exceptions import WebDriverException
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "host/tools"), str(ROOT / "host/view")]
+import docs
+import panel
 import runs
 import show
 
@@ -25,7 +28,7 @@ TARGET = ["-0.4", "-0.1", "0.6", "--circle", "0.3"]
 OBSTACLES = ["0.5,-0.35,0.75,0.1,-0.06,0,0", "-0.35,0.75,0.8,0.12,0,-0.06,0", "0.4,0.2,0.3,0.12,0,0,0"]
 HUES_DEG = {"arm": [(200, 230), (15, 65)], "obstacles": [(290, 325)], "target": [(135, 165)]}
 FLAGS = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--window-size=1100,700", "--hide-scrollbars"]
+         "--window-size=1100,800", "--hide-scrollbars"]
 
 
 def browser():
@@ -107,7 +110,9 @@ def main():
         finally:
             page.quit()
     output.parent.mkdir(parents=True, exist_ok=True)
-    image.save(output, optimize=True)
+    words = PngInfo()
+    words.add_text(docs.KEY, panel.key())
+    image.save(output, optimize=True, pnginfo=words)
     print(f"pixels before: {empty}; in {runs.shown(output.absolute())}: {counts}")
     print(f"loaded from elsewhere: {foreign or 'nothing'}")
     passed = not foreign and all(empty[name] < least <= counts[name] for name, least in LEAST_PIXELS.items())

@@ -39,7 +39,7 @@ void read_limits(YamlSection limits, Arm& arm) {
   try {
     check_limits(arm);
   } catch (const std::exception& error) {
-    limits.fail("velocity_radps, acceleration_radps2, lower_rad or upper_rad", error.what());
+    limits.fail("", error.what());
   }
 }
 

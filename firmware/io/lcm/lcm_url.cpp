@@ -64,4 +64,13 @@ MulticastGroup multicast_group_of(const std::string& url) {
   return group;
 }
 
+void check_lcm_url(const std::string& url) {
+  const std::string used = lcm_url_or_default(url);
+  try {
+    multicast_group_of(used);
+  } catch (const std::exception& error) {
+    fail("LCM network {}{}: {}", used, url.empty() ? " of LCM_DEFAULT_URL" : "", error.what());
+  }
+}
+
 }  // namespace sidestep

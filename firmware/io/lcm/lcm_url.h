@@ -19,4 +19,8 @@ std::string lcm_url_or_default(const std::string& url);
 /// std::runtime_error for everything else: LCM's other providers do not receive over UDP multicast.
 MulticastGroup multicast_group_of(const std::string& url);
 
+/// Throws std::runtime_error, with the URL and where it comes from, if multicast_group_of() refuses
+/// lcm_url_or_default(url).
+void check_lcm_url(const std::string& url);
+
 }  // namespace sidestep
