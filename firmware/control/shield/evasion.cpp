@@ -103,6 +103,12 @@ class RolloutCost {
     return distance + kDeficitWeight_per_m * clearance_deficit_m(velocity_radps, most_m);
   }
 
+  /// Whether the rollout comes to contact with an obstacle that needs no more than the hard clearance.
+  bool touches(const JointVector& velocity_radps) {
+    const double hard_m = settings_.hard_clearance_m;
+    return clearance_deficit_m(velocity_radps, hard_m) >= hard_m;
+  }
+
   /// By how much the rollout comes closer than the hard clearance, m; exact up to most_m. Starts at the step that was
   /// worst in the previous rollout, where the next one most likely fails as well.
   double clearance_deficit_m(const JointVector& velocity_radps, double most_m) {
@@ -197,6 +203,14 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
       JointVector single = JointVector::Zero(input.arm.joints);
       single[joint] = speed;
       consider(single, 1.0);
+    }
+  }
+  // Where even the best of these comes to contact, it may do better with another speed of one joint.
+  for (int joint = 0; joint < input.arm.joints && rollout_cost.touches(best); ++joint) {
+    for (const double speed : {range.lower_radps[joint], 0.0, range.upper_radps[joint]}) {
+      JointVector other = best;
+      other[joint] = speed;
+      consider(other, 1.0);
     }
   }
   return {best, true};

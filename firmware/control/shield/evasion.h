@@ -22,6 +22,8 @@ namespace sidestep {
 ///     considered, those with the largest b. Each of them keeps its side or changes it; that gives up to 15 programmes
 ///     besides that of the plan
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
+///   - where the cheapest of these still comes to contact: it with one joint at the lower bound, at rest or at the upper
+///     bound, joint by joint, each time from the cheapest so far
 ///
 /// Cost: the joint and tool terms of the objective (QpObjective), plus 1e4 per metre by which the rollout falls short
 /// of that. The cost of the previous cycle's evasion is multiplied by 0.8, so that the arm does not alternate
@@ -30,7 +32,7 @@ namespace sidestep {
 /// the nominal velocity leads back to the target.
 ///
 /// `planned_radps` is the plan, n x 1; `rows` and `range` are those of its programme. Bounded: at most 15 programmes,
-/// of up to 3 solutions each, and 18 + 2 n rollouts for n joints (two of the plan, one of the previous evasion).
+/// of up to 3 solutions each, and 18 + 6 n rollouts for n joints (two of the plan, one of the previous evasion).
 /// Without the trigger there is one rollout, without a pass row with b > 0 none.
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps);
