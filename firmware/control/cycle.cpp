@@ -73,7 +73,8 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                                  state.evasion_radps,
                                  settings.period_s(),
                                  comfort,
-                                 mode == Mode::kTrack ? settings.shield.person_weight : 0.0};
+                                 mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
+                                 !moves(mode)};
   const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
                                    weighted_task(input.tool_jacobian, turn_weight_m(input.target)), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;

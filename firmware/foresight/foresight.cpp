@@ -62,8 +62,9 @@ void Foresight::assess(const Snapshot& now) {
     const bool is_over = !now.tracking && !direct.collides && now.now_s >= guide_.end_s();
     const bool is_better =
         direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s);
-    // A retreat leads out of a danger that forecasts see by turns.
-    const bool is_trusted = !is_retreat || expected_.collides || direct_in_a_row_ >= kTrustedInARow;
+    // A retreat leads out of a danger that forecasts see by turns. One that seems to collide itself is not given up for
+    // a law that collides as well.
+    const bool is_trusted = !is_retreat || direct_in_a_row_ >= (expected_.collides ? 1 : kTrustedInARow);
     if (is_over || (is_better && is_trusted)) adopt(Guide{}, direct);
   }
   if (is_good(now, expected_)) {

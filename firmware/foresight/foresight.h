@@ -28,8 +28,8 @@ class Foresight {
   /// Every fifth call is an assessment, unless the last forecast is good and the snapshot is as expected then
   /// (expectation.h). It runs a rollout with the present guide and one without a guide. The guide is dropped if the
   /// rollout without it costs at least 0.5 s less, or if the arm does not arrive with it and the rollout without it
-  /// costs no more. A retreat that does not collide is dropped only when four such rollouts without it in a row did not
-  /// collide either: forecasts of a narrow escape alternate.
+  /// costs no more. A retreat is dropped only when the rollout without it does not collide either, and in four
+  /// assessments in a row where the retreat does not collide: forecasts of a narrow escape alternate.
   ///
   /// The four calls between two assessments do nothing while the last forecast is good and 20 such calls have passed
   /// since one was not. Otherwise they search in turns: one call plans a candidate with plan_to_target(), or, if that

@@ -205,8 +205,7 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
       consider(single, 1.0);
     }
   }
-  // Where even the best of these comes to contact, it may do better with another speed of one joint.
-  for (int joint = 0; joint < input.arm.joints && rollout_cost.touches(best); ++joint) {
+  for (int joint = 0; input.is_stopping && joint < input.arm.joints && rollout_cost.touches(best); ++joint) {
     for (const double speed : {range.lower_radps[joint], 0.0, range.upper_radps[joint]}) {
       JointVector other = best;
       other[joint] = speed;

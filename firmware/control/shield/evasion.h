@@ -22,8 +22,8 @@ namespace sidestep {
 ///     considered, those with the largest b. Each of them keeps its side or changes it; that gives up to 15 programmes
 ///     besides that of the plan
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
-///   - where the cheapest of these still comes to contact: it with one joint at the lower bound, at rest or at the upper
-///     bound, joint by joint, each time from the cheapest so far
+///   - of an arm that stops, and thus follows no guide, where the cheapest of these still comes to contact: it with one
+///     joint at the lower bound, at rest or at the upper bound, joint by joint, each time from the cheapest so far
 ///
 /// Cost: the joint and tool terms of the objective (QpObjective), plus 1e4 per metre by which the rollout falls short
 /// of that. The cost of the previous cycle's evasion is multiplied by 0.8, so that the arm does not alternate

@@ -22,6 +22,7 @@ struct ShieldInput {
   double period_s;
   double comfort_weight;       ///< weight of the comfort tier in this cycle, s2/m2
   double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
+  bool is_stopping = false;    ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
 };
 
 /// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
