@@ -16,6 +16,7 @@ from words import length
 
 NUMBERS = "Numbers"      # key of the metadata of a picture
 FAR_M = 0.3              # upper end of the plots of clearance
+MOST_NAMES = 4           # at curves of clearance to what rests
 HARD_CLEARANCE_M, REST_CLEARANCE_M = 0.02, 0.004  # of a configuration without the keys in shield:
 HEADROOM = 1.15          # above the largest value, for the names of events
 LEAST_DISTANCE_M = 1e-3  # lower end of the plots of the distance to the target
@@ -30,7 +31,7 @@ def section(run, name):
 
 # Value of the column -> (name, look)
 FORESIGHT = {1: ("Sidestep follows a path that foresight has planned", dict(facecolor="0.93", edgecolor="none")),
-             2: ("Sidestep waits: foresight knows no path yet", dict(facecolor="0.78", edgecolor="none"))}
+             2: ("Sidestep waits or makes room: foresight knows no path yet", dict(facecolor="0.78", edgecolor="none"))}
 
 
 def stretches(wanted):
@@ -145,15 +146,17 @@ def curves_of_clearance(run):
 
 
 def plot_clearances(axes, run):
-    """Of one run: from surface to surface, for each obstacle, whose number stands at its least clearance."""
+    """Of one run: from surface to surface, for each obstacle. What moves or comes nearest has its name there."""
     t, moment, known, names = run.columns["t_s"], closest(run), set(), Labels()
-    for label, text, colour, values_m in curves_of_clearance(run):
+    curves = curves_of_clearance(run)
+    nearest_m = sorted(np.min(values_m, where=np.isfinite(values_m), initial=FAR_M) for *_, values_m in curves)
+    for label, text, colour, values_m in curves:
         row = int(np.nanargmin(values_m)) if np.isfinite(values_m).any() else 0
         seen = values_m[row] < FAR_M and label not in known
         axes.plot(t, values_m, color=colour, label=label if seen else None)
         if seen:
             known.add(label)
-        if values_m[row] < 0.9 * FAR_M:
+        if values_m[row] < 0.9 * FAR_M and (values_m[row] in nearest_m[:MOST_NAMES] or colour == MOVING):
             names.add((t[row], values_m[row]), text, 1, fontweight="bold", path_effects=drawing.HALO,
                       arrowprops=dict(arrowstyle="-", color="0.4", linewidth=0.7))
     mark_moment(axes, run, moment)

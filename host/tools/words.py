@@ -55,7 +55,8 @@ def ending(run):
 
 def arrival(run):
     if outcome.arrives(run):
-        return f"arrives at {outcome.at_target(run)[-1][0]:.2f} s"
+        stays = outcome.at_target(run)
+        return f"{'arrives' if len(stays) == 1 else 'arrives again and stays'} at {stays[-1][0]:.2f} s"
     return "arrives, but leaves again" if outcome.at_target(run) else "does not arrive"
 
 

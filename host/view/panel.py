@@ -36,7 +36,8 @@ def words_of(status, ages_s, channel, waited_s):
         ("", *watch.mode_text(status), watch.speed_text(status)),
         ("clearance: ", watch.clearance_text(status, ages_s),
          watch.nearest_text(status) if watch.knows_clearance(status, ages_s) else ""),
-        ("to the target: ", watch.target_text(status)), ("foresight: ", watch.foresight_text(status) or DIRECT)]
+        ("to the target: ", watch.target_text(status)),
+        ("foresight: ", watch.foresight_text(status) or (DIRECT if status.mode == status.TRACK else "-"))]
     return STYLE + "".join(f"<div>{name}<b>{html.escape(str(what))}</b> {html.escape(' '.join(rest))}</div>"
                            for name, what, *rest in rows) + "</div>"
 
