@@ -102,10 +102,10 @@ void every_program_tells_its_version(void**) {
   }
 }
 
-void an_unusable_network_ends_with_code_1_and_a_message(void**) {
+void a_wrong_network_ends_with_code_2_and_a_message(void**) {
   Process process({"build/controller", "--config", "firmware/config/lwa3.yaml", "--lcm-url", "carrier-pigeon://"});
-  assert_int_equal(process.wait(kLimit_s), 1);
-  check(process.output().find("controller: LCM: cannot use the network 'carrier-pigeon://'") != std::string::npos, "%s",
+  assert_int_equal(process.wait(kLimit_s), 2);
+  check(process.output() == "controller: LCM network carrier-pigeon://: only udpm://ADDRESS:PORT is supported\n", "%s",
         process.output().c_str());
 }
 
@@ -153,7 +153,7 @@ int main() {
       cmocka_unit_test_teardown(an_impossible_waiting_time_of_the_simulator_is_refused, test::kill_processes),
       cmocka_unit_test_teardown(help_names_the_options, test::kill_processes),
       cmocka_unit_test_teardown(every_program_tells_its_version, test::kill_processes),
-      cmocka_unit_test_teardown(an_unusable_network_ends_with_code_1_and_a_message, test::kill_processes),
+      cmocka_unit_test_teardown(a_wrong_network_ends_with_code_2_and_a_message, test::kill_processes),
       cmocka_unit_test_teardown(the_controller_starts_from_urdf_base_and_tip_without_a_config, test::kill_processes),
       cmocka_unit_test_teardown(the_running_loop_is_reported_to_the_service_manager, test::kill_processes),
       cmocka_unit_test_teardown(a_signal_before_the_first_message_ends_the_controller, test::kill_processes),
