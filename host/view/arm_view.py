@@ -10,7 +10,8 @@ import watch
 from visuals import visuals
 from wire import obstacle_t
 
-KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "JOINT_TARGET", "CONTROLLER_STATUS"]  # the messages that are shown
+KINDS = ["ARM_STATE", "OBSTACLES", "TARGET", "JOINT_TARGET", "ATTACHMENTS",
+         "CONTROLLER_STATUS"]  # the messages that are shown
 SHAPES = {"sphere": (obstacle_t.SPHERE, ["radius_m"]), "capsule": (obstacle_t.CAPSULE, ["radius_m", "length_m"]),
           "cylinder": (obstacle_t.CYLINDER, ["radius_m", "height_m"]), "box": (obstacle_t.BOX, [])}
 KNOWN = {number for number, _ in SHAPES.values()}
@@ -79,6 +80,16 @@ class ArmView:
         obstacles = message.obstacles if message else []
         return [self.in_world(obstacle) for obstacle in obstacles if obstacle.shape in KNOWN and
                 is_near(obstacle.position, obstacle.quaternion, obstacle.size, obstacle.velocity)]
+
+    def avoided(self, latest, frame, obstacles):
+        """Those of the obstacles that a link, by its frame, has to avoid: the tool may touch what ATTACHMENTS allows."""
+        message = latest.get(self.names["ATTACHMENTS"])
+        if message is None:
+            return obstacles
+        tool = 1 + max(i for i, joint in enumerate(self.chain) if joint.axis is not None)
+        held = {shape.id for shape in message.shapes}
+        touched = set(message.allowed) if frame >= tool else held & set(message.allowed)
+        return [obstacle for obstacle in obstacles if obstacle.id not in touched]
 
     def links_of_others(self, latest):
         return [link for name in self.neighbours if name in latest for link in latest[name].obstacles]

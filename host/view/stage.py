@@ -69,8 +69,10 @@ class Stage:
             nodes.colour(None)
         elif colours:
             others = [link for other in self.arms if other is not one for link in other.links(latest)]
-            near = obstacles + others + one.links_of_others(latest)
-            nodes.colour([geometry.clearance_m(shape, link_poses[shape.frame], near) for shape in one.shapes])
+            others += one.links_of_others(latest)
+            nodes.colour([geometry.clearance_m(shape, link_poses[shape.frame],
+                                               one.avoided(latest, shape.frame, obstacles) + others)
+                          for shape in one.shapes])
         return link_poses[-1][0]
 
 

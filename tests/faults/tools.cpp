@@ -23,6 +23,9 @@ void a_line_leads_from_a_link_to_its_nearest_obstacle(void**) {
 void no_link_is_coloured_as_safe_while_the_clearance_is_unknown(void**) {
   passes("unknown_clearance");
 }
+void the_tool_is_not_coloured_by_what_it_may_touch(void**) {
+  passes("allowed_touch");
+}
 void the_panel_of_the_view_says_what_is_unknown(void**) {
   passes("panel_texts");
 }
@@ -91,6 +94,7 @@ int main() {
       cmocka_unit_test_teardown(a_line_leads_from_a_link_to_its_nearest_obstacle, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(no_link_is_coloured_as_safe_while_the_clearance_is_unknown,
                                 sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(the_tool_is_not_coloured_by_what_it_may_touch, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_panel_of_the_view_says_what_is_unknown, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(obstacles_received_by_an_arm_are_drawn_in_the_world_frame,
                                 sidestep::test::kill_processes),

@@ -123,6 +123,21 @@ def unknown_clearance():
     assert not one.knows_clearance(latest)
 
 
+def allowed_touch():
+    """What the tool may touch colours the other links only, and what it holds none."""
+    one = ArmView(arm.CONFIG, LWA3)
+    latest, message = wire.Messages(one.channels()), wire.attachments_t()
+    ball, can = (crowds.obstacle(number, 0, [0.1], [0.5, 0, 0.5], [0, 0, 0]) for number in (4, 7))
+    frames = sorted({shape.frame for shape in one.shapes})
+    assert one.avoided(latest, frames[-1], [ball, can]) == [ball, can]
+    message.allowed, message.num_allowed = [7], 1
+    for held, of_arm in (([], [ball, can]), ([can], [ball])):
+        message.shapes, message.num_shapes = held, len(held)
+        latest.store("ATTACHMENTS", message.encode(), 10.0)
+        assert one.avoided(latest, frames[-1], [ball, can]) == [ball]
+        assert all(one.avoided(latest, frame, [ball, can]) == of_arm for frame in frames[:-1])
+
+
 def panel_texts():
     """The panel says how long it waits for which channel, and names no nearest link to a clearance nobody knows."""
     assert "waiting for LEFT_STATUS for 12 s" in panel.words_of(None, {}, "LEFT_STATUS", 12.3)
@@ -495,7 +510,7 @@ def hostile_bytes():
         assert wire.decoded(channel, whole) is not None
 
 
-CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
+CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance, allowed_touch,
                                               panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
