@@ -5,7 +5,8 @@ import runs
 import wire
 
 LISTEN_S = 0.25  # a controller sends its status every cycle, a sender of the scripts every 20 ms
-FINGERPRINTS = {kind: wire.TYPES[kind]._get_packed_fingerprint() for kind in ("CONTROLLER_STATUS", "TARGET", "OBSTACLES")}
+KINDS = ("CONTROLLER_STATUS", "TARGET", "OBSTACLES")
+FINGERPRINTS = {kind: wire.TYPES[kind]._get_packed_fingerprint() for kind in KINDS}
 
 
 def heard(lcm_url="", duration_s=LISTEN_S):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Run a scenario: one law in real time, then both laws in lockstep for a table and figures.
 
-The real-time run uses the default LCM network, on which no other controller may run, so lcm-spy, watch.py and the send_* scripts can take part. The exit code
-is that of the simulator: 0 if the scenario's expectations were met, 1 if not. They are expectations of Sidestep: a run
-with the paper's law that does not meet them is shown, and the exit code is 0.
+The real-time run uses the default LCM network, on which no other controller may run; lcm-spy, watch.py and the send_*
+scripts can take part. The exit code is that of the simulator: 0 if the scenario's expectations were met, 1 if not. They
+are expectations of Sidestep: a run with the paper's law that does not meet them is shown, and the exit code is 0.
 """
 import argparse
 from pathlib import Path

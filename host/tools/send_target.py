@@ -91,7 +91,8 @@ def parsed():
     parser.add_argument("numbers", type=argument(coordinate), nargs="*", metavar="NUMBER",
                         help="position of the target or centre of its path, m; then velocity, m/s (default 0)")
     path = parser.add_mutually_exclusive_group()
-    path.add_argument("--circle", type=argument(positive), metavar="RADIUS", help="move on a horizontal circle, radius in m")
+    path.add_argument("--circle", type=argument(positive), metavar="RADIUS",
+                      help="move on a horizontal circle, radius in m")
     path.add_argument("--figure-eight", type=argument(positive), metavar="RADIUS",
                       help="move on a horizontal figure eight, half its length in m")
     path.add_argument("--joints", type=argument(joints), metavar="Q1,Q2,...",
