@@ -45,7 +45,7 @@ def words_of(status, ages_s, channel, waited_s):
 class Panel:
     def __init__(self, server, arms, layers):
         gui = server.gui
-        gui.configure_theme(show_logo=False, show_share_button=False, control_width="small")
+        gui.configure_theme(show_logo=False, show_share_button=False, control_layout="fixed", control_width="small")
         gui.set_panel_label("Sidestep")
         self.texts = [gui.add_html("") for _ in arms]
         self.channels, self.start_s = [one.names["CONTROLLER_STATUS"] for one in arms], time.monotonic()

@@ -22,18 +22,19 @@ NO_LINES = np.zeros((0, 2, 3))
 def mesh_of(kind, size):
     """The trimesh of a shape; size as in arm.Shape or obstacle_t. Its centre is the origin, its axis is z."""
     if kind == "sphere":
-        return trimesh.creation.icosphere(subdivisions=3, radius=size[0])
+        return trimesh.creation.icosphere(subdivisions=2, radius=size[0])
     if kind == "box":
         return trimesh.creation.box(extents=size)
     if kind == "cylinder":
-        return trimesh.creation.cylinder(radius=size[0], height=size[1], sections=32)
-    mesh = trimesh.creation.capsule(radius=size[0], height=size[1], count=[24, 24])
+        return trimesh.creation.cylinder(radius=size[0], height=size[1], sections=24)
+    mesh = trimesh.creation.capsule(radius=size[0], height=size[1], count=[16, 16])
     mesh.apply_translation(-mesh.bounds.mean(axis=0))
     return mesh
 
 
 def mesh_of_file(visual):
     mesh = trimesh.load(visual.file, force="mesh")
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)  # a fifth of the vertices, so of the page
     mesh.apply_scale(visual.scale)
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = visual.rotation, visual.position

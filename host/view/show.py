@@ -19,6 +19,7 @@ from errors import reason
 from view import add_port
 
 PAUSE_S = 1.0  # between two runs
+NICE = 5       # of the view: at 10, a browser that draws in software leaves it too little of two CPUs for its rate
 COMMANDS = """In a second terminal:
   cd {root}
   build/venv/bin/python host/tools/send_target.py -0.5 -0.3 0.5              # Ctrl-C ends it, and any other sender
@@ -47,7 +48,7 @@ def refuse_taken(port):
 def viewer(scenario, port, lcm_url=""):
     """view.py while the block runs, at a lower priority than everything else."""
     arms = runs.arms_of(scenario)
-    command = ["nice", "-n", 10, sys.executable, ROOT / "host/view/view.py", "--port", port,
+    command = ["nice", "-n", NICE, sys.executable, ROOT / "host/view/view.py", "--port", port,
                "--config", *map(runs.config_of, arms), *["--steer"] * lacks_target(scenario)]
     runs.RECORDS.mkdir(parents=True, exist_ok=True)
     with open(runs.RECORDS / "view.log", "w") as log:

@@ -9,6 +9,7 @@ import scene
 
 TRAIL_STEP_M = 0.01
 JUMP_M = 0.3          # a tool motion between two drawings that only a new run can cause
+AMBIENT = 1.2         # light from everywhere, so that no side of a shape is black
 CAMERA_M, LOOK_AT_M, FIELD_RAD = (1.1, -1.6, 1.1), (0.1, 0.0, 0.5), 0.75  # from the middle of the arms' bases
 
 
@@ -39,7 +40,10 @@ class Stage:
         server.initial_camera.position = middle + CAMERA_M
         server.initial_camera.look_at = middle + LOOK_AT_M
         server.initial_camera.fov = FIELD_RAD
-        server.scene.configure_default_lights(cast_shadow=False)  # shadows cost most without a GPU
+        # Without a GPU, an environment map takes two thirds of the browser's time, and shadows as much again.
+        server.scene.configure_environment_map(None)
+        server.scene.configure_default_lights(cast_shadow=False)
+        server.scene.add_light_ambient("/light", intensity=AMBIENT)
         server.scene.add_grid("/floor", width=4.0, height=4.0, cell_size=0.25, section_size=1.0)
         self.arm_nodes = [scene.ArmNodes(server.scene, one) for one in arms]
         self.obstacle_nodes = scene.ObstacleNodes(server.scene)

@@ -18,6 +18,7 @@ import wire
 from arm_view import ArmView
 
 PERIOD_S = 1 / 30
+CATCH_UP_S = 0.1      # a drawing that is late by less shortens the wait for the next, so that the rate holds
 SLOW = 6              # colours and words change every SLOW frames
 TRAIL_POINTS = 120
 
@@ -53,8 +54,8 @@ class View:
     def run(self):
         due_s = time.monotonic()
         while True:
-            due_s = max(due_s + PERIOD_S, time.monotonic())
-            self.latest.receive(due_s - time.monotonic())
+            due_s = max(due_s + PERIOD_S, time.monotonic() - CATCH_UP_S)
+            self.latest.receive(max(due_s - time.monotonic(), 0.0))
             with self.server.atomic():
                 self.draw()
 
