@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+import arm
 import geometry
 import scene
 
@@ -11,6 +12,8 @@ TRAIL_STEP_M = 0.01
 JUMP_M = 0.3          # a tool motion between two drawings that only a new run can cause
 AMBIENT = 1.2         # light from everywhere, so that no side of a shape is black
 CAMERA_M, LOOK_AT_M, FIELD_RAD = (1.1, -1.6, 1.1), (0.1, 0.0, 0.5), 0.75  # from the middle of the arms' bases
+CAMERA_TURNS_RAD = np.deg2rad([0, 45, -45, 90, -90, 135, -135, 180])      # of the camera about the vertical, best first
+SEEN_M = np.array([(x, y, z) for x in (-0.3, 0.0, 0.3) for y in (-0.3, 0.0, 0.3) for z in (0.1, 0.5, 0.9)])
 
 
 class Layers(NamedTuple):
@@ -27,6 +30,16 @@ def first_layers(arms):
     return Layers(has_visuals, not has_visuals)
 
 
+def camera_m(middle, surroundings):
+    """Where the camera stands, from the middle of the arms' bases, so that surroundings hide least of SEEN_M."""
+    def hidden(offset):
+        along = np.linspace(0.0, 1.0, 60)[:, None, None]
+        lines = middle + (offset + along * (SEEN_M - offset)).reshape(-1, 3)
+        inside = [(geometry.distance_m(obstacle, lines) <= 0.0).reshape(60, -1) for obstacle in surroundings]
+        return np.any(inside, axis=(0, 1)).sum() if inside else 0
+    return min((arm.rotation_of_rpy(0.0, 0.0, turn) @ CAMERA_M for turn in CAMERA_TURNS_RAD), key=hidden)
+
+
 class Stage:
     """arms: arm_view.ArmView each; all have the same obstacles. trail_points: length of a tool's path, TRAIL_STEP_M."""
 
@@ -37,7 +50,7 @@ class Stage:
         for i, obstacle in enumerate(self.surroundings):
             obstacle.id = -2 - i  # unique among several arms
         middle = np.mean([one.position for one in arms], axis=0)
-        server.initial_camera.position = middle + CAMERA_M
+        server.initial_camera.position = middle + camera_m(middle, self.surroundings)
         server.initial_camera.look_at = middle + LOOK_AT_M
         server.initial_camera.fov = FIELD_RAD
         # Without a GPU, an environment map takes two thirds of the browser's time, and shadows as much again.
