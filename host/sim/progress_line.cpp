@@ -32,7 +32,7 @@ const char* name_of(Mode mode) {
 std::string foresight_text(const Status& status) {
   if (status.foresight == 1 && status.guide_horizon_s > 0.0)
     return fmt::format(", guided {:.1f} s", status.guide_horizon_s);
-  if (status.foresight == 1) return ", guided, at its end";
+  if (status.foresight == 1) return ", guided, at the end of the path";
   return status.foresight == 2 ? ", no path known" : "";
 }
 

@@ -84,6 +84,17 @@ double depth_m(const Geometry& a, const Eigen::Isometry3d& base_from_a, const Ge
   return depth;
 }
 
+// How far one of two cylinders has to move across both axes until they are separate. FCL's depth of long cylinders that
+// cross is up to their length.
+double depth_across_m(const Solid& a, const Eigen::Isometry3d& base_from_a, const Solid& b,
+                      const Eigen::Isometry3d& base_from_b) {
+  const Eigen::Vector3d offset = base_from_b.translation() - base_from_a.translation();
+  const Eigen::Vector3d axis = base_from_a.linear().col(2), normal = axis.cross(base_from_b.linear().col(2));
+  const double apart_m =
+      normal.norm() > 1e-9 ? std::abs(offset.dot(normal.normalized())) : offset.cross(axis).norm();  // or parallel axes
+  return a.size_m.x() + b.size_m.x() - apart_m;
+}
+
 // Least value of a convex function on [low, high], by golden-section search.
 template <typename Function>
 double least_value(const Function& function, double low, double high) {
@@ -175,7 +186,9 @@ double signed_distance_m(const Solid& a, const Eigen::Isometry3d& base_from_a, c
   if (gap > kTouching_m && !boxes) return gap;
   if (b.shape == Shape::kCapsule) return capsule_distance_m(a, base_from_a, b, base_from_b);
   if (a.shape == Shape::kCapsule) return capsule_distance_m(b, base_from_b, a, base_from_a);
-  const double depth = depth_m(a_geometry, base_from_a, b_geometry, base_from_b);
+  double depth = depth_m(a_geometry, base_from_a, b_geometry, base_from_b);
+  if (a.shape == Shape::kCylinder && b.shape == Shape::kCylinder)
+    depth = std::min(depth, depth_across_m(a, base_from_a, b, base_from_b));
   return depth > 0.0 ? -depth : gap;
 }
 

@@ -49,6 +49,13 @@ def has_resting(run):
         for entry in run.scenario["obstacles"])
 
 
+def slowness(run, name):
+    """The speed of an obstacle that moves too slowly for the full clearance, in brackets; else empty."""
+    speeds = {obstacle_name(run, i): np.linalg.norm(entry.get("velocity_mps", (0, 0, 0)))
+              for i, entry in enumerate(run.scenario["obstacles"]) if moves(run, i)}
+    return f"({speeds[name]:g} m/s) " if 0 < speeds.get(name, 0) < SLOW_MPS else ""
+
+
 def clearance(run):
     """m, at every row, to obstacles, surroundings and other arms."""
     return np.minimum(run.columns["clearance_m"], run.columns["neighbour_clearance_m"])

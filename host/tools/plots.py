@@ -18,6 +18,8 @@ NUMBERS = "Numbers"      # key of the metadata of a picture
 FAR_M = 0.3              # upper end of the plots of clearance
 MOST_NAMES = 4           # at curves of clearance to what rests
 HARD_CLEARANCE_M, REST_CLEARANCE_M = 0.02, 0.004  # of a configuration without the keys in shield:
+CONTACT_TEXT = (0.82, 0.88, 0.94)  # of the width of a panel: where "contact: overlap" stands
+STYLES = ["-", "--", "-.", ":"]  # of the curves of one colour
 HEADROOM = 1.15          # above the largest value, for the names of events
 LEAST_DISTANCE_M = 1e-3  # lower end of the plots of the distance to the target
 JUMP_M = 0.05            # in one period of a target
@@ -74,7 +76,7 @@ def mark_events(axes, run, label=None):
 
 def mark_changes(axes, run):
     """Where the clearance jumps: what the tool may touch, as a can and what it stands on, does not count."""
-    mark_events(axes, run, "what the tool may touch changes, and so what counts" if outcome.grasped(run) else None)
+    mark_events(axes, run, "from here on the tool may touch other things: the curve jumps" if outcome.grasped(run) else None)
 
 
 def plot_target_distance(axes, runs):
@@ -94,7 +96,12 @@ def plot_target_distance(axes, runs):
 
 
 def mark_limits(axes, run, resting):
-    """The clearances that the shield keeps: to what moves, and, if there is something at rest, a band down to that."""
+    """The clearances that the shield keeps: to what moves, and, if there is something at rest, a band down to that.
+
+    Nothing for the paper's law, which has no shield.
+    """
+    if run.law == "paper":
+        return
     hard_m, rest_m = (section(run, "shield").get(key, default_m) for key, default_m in (
         ("hard_clearance_m", HARD_CLEARANCE_M), ("rest_clearance_m", REST_CLEARANCE_M)))
     axes.axhline(hard_m, color=BLACK, linewidth=1, linestyle=(0, (5, 3)),
@@ -102,7 +109,7 @@ def mark_limits(axes, run, resting):
                        f"(at {outcome.SLOW_MPS:g} m/s or faster) or is uncertain")
     if resting and rest_m < hard_m:
         axes.axhspan(rest_m, hard_m, color=BLACK, alpha=0.18, linewidth=0,
-                     label=f"allowed only to what is slower; at rest, down to {rest_m * 1000:g} mm")
+                     label=f"nearer only to what is slower; to what rests {rest_m * 1000:g} mm")
 
 
 def finish_clearance(axes, run, lowest_m, title, legend_columns, resting=True):
@@ -147,22 +154,29 @@ def curves_of_clearance(run):
 
 def plot_clearances(axes, run):
     """Of one run: from surface to surface, for each obstacle. What moves or comes nearest has its name there."""
-    t, moment, known, names = run.columns["t_s"], closest(run), set(), Labels()
+    t, moment, known, names, far = run.columns["t_s"], closest(run), {}, Labels(), []
     curves = curves_of_clearance(run)
     nearest_m = sorted(np.min(values_m, where=np.isfinite(values_m), initial=FAR_M) for *_, values_m in curves)
     for label, text, colour, values_m in curves:
         row = int(np.nanargmin(values_m)) if np.isfinite(values_m).any() else 0
-        seen = values_m[row] < FAR_M and label not in known
-        axes.plot(t, values_m, color=colour, label=label if seen else None)
-        if seen:
-            known.add(label)
+        if not values_m[row] < FAR_M:
+            far += [text] * bool(text)
+            continue
+        known[label] = known.get(label, 0) + 1
+        axes.plot(t, values_m, color=colour, linestyle=STYLES[(known[label] - 1) % len(STYLES)],
+                  label=": ".join(filter(None, (label, text))) if known[label] <= len(STYLES) else None)
         if values_m[row] < 0.9 * FAR_M and (values_m[row] in nearest_m[:MOST_NAMES] or colour == MOVING):
             names.add((t[row], values_m[row]), text, 1, fontweight="bold", path_effects=drawing.HALO,
                       arrowprops=dict(arrowstyle="-", color="0.4", linewidth=0.7))
+    if far:
+        axes.plot([], [], " ", label=f"always farther away: {', '.join(far[:MOST_NAMES])}" +
+                  ", ..." * (len(far) > MOST_NAMES))
     mark_moment(axes, run, moment)
     mark_touching_links(axes, run)
     mark_changes(axes, run)
     finish_clearance(axes, run, float(clearance(run).min()), title_of_clearance(run), 1, outcome.has_resting(run))
+    for share in CONTACT_TEXT:
+        names.keep_free((share * axes.get_xlim()[1], axes.get_ylim()[0] / 2), 10)
     names.place(axes)
 
 
@@ -170,7 +184,7 @@ def mark_moment(axes, run, moment):
     style = dict(marker="o", color="none", markeredgecolor=CONTACT if moment.contact else BLACK, markeredgewidth=1.6,
                  markersize=9)
     height_m = clearance(run)[moment.row] if moment.name == outcome.LINKS else moment.clearance_m
-    axes.plot(run.columns["t_s"][moment.row], height_m, linestyle="none", zorder=5,
+    axes.plot(run.columns["t_s"][moment.row], min(height_m, FAR_M), linestyle="none", zorder=5, clip_on=False,
               label="time drawn in the picture", **style)
 
 
@@ -191,10 +205,10 @@ def plot_both_clearances(axes, runs):
         values_m = clearance(run)
         least_mm = values_m.min() * 1000
         axes.plot(run.columns["t_s"], values_m, **LAW_LINES[run.law], label=f"{LAWS[run.law]}: " + (
-            f"least {least_mm:.1f} mm" if least_mm >= 0 else f"overlap of at most {-least_mm:.1f} mm"))
+            f"least {least_mm:.1f} mm" if least_mm >= 0 else f"deepest overlap {-least_mm:.1f} mm"))
         mark_touching_links(axes, run)
     mark_changes(axes, runs[0])
-    finish_clearance(axes, runs[0], min(float(clearance(run).min()) for run in runs),
+    finish_clearance(axes, runs[-1], min(float(clearance(run).min()) for run in runs),
                      title_of_clearance(runs[0]), 1, outcome.has_resting(runs[0]))
 
 
@@ -210,7 +224,7 @@ def plot_axis_distances(axes, runs):
         axes.plot(run.columns["t_s"], distance_m, **LAW_LINES[run.law],
                   label=f"{LAWS[run.law]}: least {distance_m.min():.4f} m")
     published_m = runs[0].scenario["published"]["axis_distance_m"]
-    axes.axhline(published_m, color=GREEN, linewidth=1.2, linestyle="-.", label=f"published least: {published_m:.4f} m")
+    axes.axhline(published_m, color=GREEN, linewidth=1.2, linestyle="-.", label=f"published least: {published_m:.4f} m\n(with unpublished gains and tool)")
     parameters = section(runs[0], "paper")
     for name, key, style in (("$d_1$", "d_1_m", ":"), ("$d_2$", "d_2_m", "--")):
         if key in parameters:

@@ -80,8 +80,8 @@ def plot_band(axes, run):
                      label=None if i else "nothing logged")
     axes.set_yticks(range(len(rows)), list(rows))
     axes.grid(axis="y", visible=False)
-    absent = [name for name in BAND if name not in rows]
-    title = ", ".join(reversed(rows)).capitalize() + "".join(f", no {name}" for name in absent)
+    absent = ", ".join(f"no {name}" for name in BAND if name not in rows)
+    title = ", ".join(reversed(rows)).capitalize() + (f" ({absent} in this run)" if absent else "")
     plots.finish(axes, title, 10, ylim=(-0.5, max(len(rows), 1) - 0.5))
 
 
@@ -121,7 +121,7 @@ def plot_joints(axes, run, pattern, label, title, limits):
         owners = np.flatnonzero((limits == limit).any(axis=1))
         colour = JOINTS[owners[0] % len(JOINTS)] if len(owners) == 1 else BLACK
         axes.axhline(limit, **DASHED | {"color": colour})
-    axes.plot([], [], **DASHED, label="limits; black: of several joints")
+    axes.plot([], [], **DASHED, label="limits (black: shared by several joints)")
     plots.finish(axes, title, len(JOINTS) + 1)
 
 

@@ -56,7 +56,7 @@ def measured_by(record):
     """Who measured. The times in a report are those of the log; the simulator's own begin when the arm tracks."""
     if not record:
         return "the controller, which knows only what it receives"
-    return f"the simulator, whose own times begin {record.columns['t_s'][0]:.2f} s later"
+    return f"the simulator, whose clock starts {record.columns['t_s'][0]:.2f} s later than this page's"
 
 
 def rows(run, log):

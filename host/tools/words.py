@@ -5,7 +5,7 @@ import outcome
 from runs import LAWS
 
 SHORTEST_STAY_S = 0.1  # at the target
-APPROACHING_M, LAST_S = 0.001, 1.0  # a tool that came so much nearer in the last time is still approaching
+APPROACHING_M, LAST_S = 0.01, 1.0  # a tool that came so much nearer in the last time is still approaching
 
 
 def length(value_m):
@@ -27,7 +27,7 @@ def approach(run):
         return (f"touches {moment.name} {at(moment.row)}\n"
                 f"deepest: {-nearest_one.clearance_m * 1000:.1f} mm in {nearest_one.name} {at(nearest_one.row)}")
     text = (f"nearest: {nearest_one.clearance_m * 1000:.1f} mm to {nearest_one.name or 'what it may not touch'} "
-            f"{at(nearest_one.row)}")
+            f"{outcome.slowness(run, nearest_one.name)}{at(nearest_one.row)}")
     if moment.contact:
         return f"links touch each other {at(moment.row)}\n{text}"
     if moment.row != nearest_one.row:
@@ -56,7 +56,7 @@ def ending(run):
 def arrival(run):
     if outcome.arrives(run):
         stays = outcome.at_target(run)
-        return f"{'arrives' if len(stays) == 1 else 'arrives again and stays'} at {stays[-1][0]:.2f} s"
+        return f"arrives at {stays[-1][0]:.2f} s" if len(stays) == 1 else f"arrives again at {stays[-1][0]:.2f} s and stays"
     return "arrives, but leaves again" if outcome.at_target(run) else "does not arrive"
 
 

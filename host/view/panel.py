@@ -4,7 +4,7 @@ import time
 
 import watch
 import wire
-from scene import ARROW_S, BANDS, GUIDE, MOVING, RESTING, TARGET, TRAIL, UNKNOWN
+from scene import ARROW_S, BANDS, GUIDE, MOVING, NEAREST, RESTING, TARGET, TRAIL, UNKNOWN
 from stage import Layers
 
 STYLE = "<div style='font-size:0.85em;padding:0 1em'>"
@@ -17,8 +17,8 @@ def key():
     rows = [(colour, f"link, clearance {low} to {most_m:g} m") for low, (most_m, colour) in zip(bounds, BANDS[:-1])]
     rows += [(BANDS[-1][1], f"link, clearance above {bounds[-1]} m"),
              (UNKNOWN, "link, clearance unknown"),
-             (MOVING, f"moving obstacle; arrow: {ARROW_S:g} s ahead; line: nearest to the arm"),
-             (RESTING, "obstacle at rest, surroundings"), (TARGET, "target"),
+             (MOVING, f"moving obstacle; arrow: {ARROW_S:g} s ahead"), (RESTING, "obstacle at rest, surroundings"),
+             (NEAREST, "line: from the arm to the nearest obstacle"), (TARGET, "target"),
              (TRAIL, "path of the tool"), (GUIDE, "path that foresight has planned")]
     return STYLE + "".join(
         f"<div><span style='color:rgb{colour}'>&#9632;</span> {words}</div>" for colour, words in rows) + "</div>"
@@ -47,6 +47,7 @@ class Panel:
         gui = server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_layout="fixed", control_width="small")
         gui.set_panel_label("Sidestep")
+        self.names = [one.name for one in arms]
         self.texts = [gui.add_html("") for _ in arms]
         self.channels, self.start_s = [one.names["CONTROLLER_STATUS"] for one in arms], time.monotonic()
         robot = "robot" if layers.visuals else "robot (no visual meshes found)"
@@ -60,8 +61,9 @@ class Panel:
 
     def show(self, states):
         """states: (status or None, ages_s) of each arm."""
-        for text, state, channel in zip(self.texts, states, self.channels):
+        for text, state, channel, name in zip(self.texts, states, self.channels, self.names):
             words = words_of(*state, channel, time.monotonic() - self.start_s)
+            words = f"{STYLE}<b>{html.escape(name)}</b></div>{words}" if name else words
             if text.content != words:
                 text.content = words
 

@@ -9,9 +9,9 @@ BANDS = [(0.05, (217, 26, 26)), (0.1, (242, 128, 26)), (0.2, (230, 204, 26)), (n
 MOVING, RESTING = (178, 38, 166), (150, 150, 150)  # obstacles; surroundings rest
 MOVING_MPS = 0.01     # speed from which on an obstacle counts as moving
 UNKNOWN = (95, 95, 105)  # of a link whose clearance nobody knows
-TARGET, TRAIL, GUIDE = (13, 166, 76), (40, 40, 40), (0, 190, 190)
+TARGET, TRAIL, GUIDE, NEAREST = (13, 166, 76), (40, 40, 40), (0, 190, 190), (122, 72, 20)
 CROSS_M = 0.12          # from the target to each end of its cross hair, which an arm at the target does not hide
-MOST_NUMBERS = 12       # obstacles; more of them have no numbers
+MOST_NUMBERS = 24       # obstacles; more of them have no numbers
 ARROW_S = 0.5           # an arrow is the motion in this time
 TRANSPARENT = 0.35      # opacity of the collision shapes over visual meshes
 OBSTACLE_KINDS = {obstacle_t.SPHERE: "sphere", obstacle_t.CAPSULE: "capsule", obstacle_t.BOX: "box",
@@ -70,14 +70,14 @@ class ArmNodes:
         self.solids = [self.add_shape(scene, f"{prefix}/{shape.frame}/shape{i}", shape)
                        for i, shape in enumerate(one.shapes)]
         for i, joint in enumerate(one.chain):  # from joint to joint, where no shape covers the links
-            scene.add_line_segments(f"{prefix}/{i}/axis", np.array([[np.zeros(3), joint.offset]]), TRAIL,
+            scene.add_line_segments(f"{prefix}/{i}/axis", np.array([[np.zeros(3), joint.offset]]), RESTING,
                                     line_width=2.0)
         self.target = scene.add_icosphere(f"{prefix}/target", 0.03, color=TARGET, visible=False)
         scene.add_line_segments(f"{prefix}/target/cross", CROSS_M * np.stack([-np.eye(3), np.eye(3)], axis=1), TARGET,
                                 line_width=4.0)
         self.trail, self.guide, self.nearest = (
             scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width, visible=False)
-            for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", MOVING, 2.0)))
+            for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", NEAREST, 3.0)))
 
     def add_shape(self, scene, name, shape):
         handle = add_mesh(scene, name, mesh_of(shape.kind, shape.size), visible=not self.visuals,

@@ -63,6 +63,8 @@ const Case kCases[] = {
     {"cube over cylinder", kCylinder, kCube, at({0.1, 0.05, 0.3}), 0.05, 1e-9},
     {"cube in the side of cylinder", kCylinder, kCube, at({0.13, 0, 0}), -0.02, 1e-6},
     {"cube touches cylinder", kCylinder, kCube, at({0.15, 0, 0}), 0, 1e-8},
+    {"cylinder across cylinder", kCylinder, kCylinder, lying({0, 0.03, 0}), -0.07, 1e-9},
+    {"cylinder along cylinder", kCylinder, kCylinder, at({0, 0.03, 0.1}), -0.07, 1e-9},
     {"capsule touches cylinder", kCylinder, kCapsule, lying({0, 0.1, 0.1}), 0, 1e-9},
     {"cube touches cube", kCube, kCube, at({0.05, 0.2, 0}), 0, 1e-9},
     {"cube beside cube", kCube, kCube, at({0.05, 0.3, 0.1}), 0.1, 1e-9},
