@@ -4,6 +4,7 @@ import csv
 import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -183,9 +184,21 @@ def numeric(column):
         return np.array(column)
 
 
+claims = []  # sockets without a file whose names are ports: no other process can have one of them
+
+
 def private_url():
-    """An LCM network on this machine only, with a random port so that parallel runs do not meet."""
-    return f"udpm://239.255.76.67:{random.randint(20000, 32000)}?ttl=0"
+    """An LCM network on this machine only, on a port that no other run has until this process ends."""
+    while True:
+        port = random.randint(20000, 32000)
+        claim = socket.socket(socket.AF_UNIX)
+        try:
+            claim.bind(f"\0sidestep-{port}")
+        except OSError:
+            claim.close()
+            continue
+        claims.append(claim)
+        return f"udpm://239.255.76.67:{port}?ttl=0"
 
 
 def start(command, output):

@@ -9,8 +9,8 @@
 namespace sidestep::test {
 
 std::string private_lcm_url(int number) {
-  // Below the ephemeral ports of the system: sockets on those cannot be shared.
-  const int port = 10000 + 2 * (getpid() % 11000) + number;
+  // Below the ephemeral ports of the system, as sockets on those cannot be shared, and below those of scripts.
+  const int port = 10000 + 2 * (getpid() % 5000) + number;
   return "udpm://239.255.76." + std::to_string(67 + number) + ":" + std::to_string(port) + "?ttl=0";
 }
 

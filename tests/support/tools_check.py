@@ -36,11 +36,12 @@ import send_attachments
 import send_obstacles
 import send_target
 import show
+import stage
 import view
 import visuals
 import watch
 import wire
-from arm_view import ArmView
+from arm_view import ArmView, static_obstacle
 
 STEP_S = 1e-4
 LWA3 = (ROOT / "urdf/lwa3.urdf", "base_link", "tool")
@@ -500,6 +501,26 @@ def watched_texts():
         assert watch.nearest_text(status) == text, watch.nearest_text(status)
 
 
+def networks():
+    """Two runs never have the same network, even if the same port is drawn twice; nor have two processes."""
+    drawn = iter([40001, 40001, 40002, 40001])
+    with mock.patch("random.randint", lambda *_: next(drawn)):
+        urls = [runs.private_url(), runs.private_url()]
+    assert [url.split(":")[2] for url in urls] == ["40001?ttl=0", "40002?ttl=0"], urls
+    other = ("import runs, random; ports = iter([40001, 40003]); random.randint = lambda *_: next(ports); "
+             "print(runs.private_url())")
+    printed = subprocess.run([sys.executable, "-c", other], cwd=ROOT / "host/tools", capture_output=True, text=True)
+    assert ":40003?" in printed.stdout, printed
+
+
+def camera():
+    """The camera of the view moves aside where a wall would hide the arm."""
+    free = stage.camera_m(np.zeros(3), [])
+    assert np.allclose(free, stage.CAMERA_M), free
+    wall = static_obstacle({"shape": "box", "edges_m": [2, 0.1, 2], "position_m": [0, -0.6, 0.5]}, -2)
+    assert stage.camera_m(np.zeros(3), [wall])[1] > -0.5, "behind the wall"
+
+
 def hostile_bytes():
     """Bytes that are not a message of the channel's type raise no exception."""
     generator = random.Random(1)
@@ -514,7 +535,7 @@ CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, ne
                                               panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              another_python, busy_network, second_signal,
+                                              another_python, busy_network, networks, camera, second_signal,
                                               late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":

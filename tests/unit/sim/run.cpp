@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "tests/support/check.h"
+#include "tests/support/lcm_peer.h"
 
 using namespace sidestep::sim;
 namespace wire = sidestep;
@@ -22,11 +23,6 @@ namespace wire = sidestep;
 namespace {
 
 const std::atomic<bool> kNotInterrupted{false};
-
-/// A port per process, because tests may share one network.
-std::string url() {
-  return "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 40'000) + "?ttl=0";
-}
 
 Scenario scenario_of(double duration_s) {
   Scenario scenario = load_scenario("host/scenarios/paper-c.yaml").front();
@@ -39,7 +35,7 @@ class StandIn {
  public:
   using Respond = std::function<void(StandIn&, int64_t utime, int cycle)>;
 
-  explicit StandIn(Respond respond) : respond_(std::move(respond)), lcm_(url()) {
+  explicit StandIn(Respond respond) : respond_(std::move(respond)), lcm_(sidestep::test::private_lcm_url()) {
     lcm_.subscribe("ARM_STATE", &StandIn::on_arm, this)->setQueueCapacity(1000);
     lcm_.subscribe("OBSTACLES", &StandIn::on_obstacles, this)->setQueueCapacity(1000);
     lcm_.subscribe("TARGET", &StandIn::on_target, this)->setQueueCapacity(1000);
@@ -128,7 +124,7 @@ struct Result {
 
 Result simulate(const Scenario& scenario, bool lockstep, double patience_s = 5, const std::string& csv_file = "",
                 const std::atomic<bool>& interrupted = kNotInterrupted) {
-  SimWire wire(url(), "", {scenario.channels});
+  SimWire wire(sidestep::test::private_lcm_url(), "", {scenario.channels});
   wire.leave_to_others(0, scenario.world);
   std::vector<Run> runs;
   runs.emplace_back(scenario, csv_file);
