@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -241,6 +242,26 @@ def wait(processes, limit_s):
         time.sleep(0.005)
 
 
+@contextmanager
+def signals_as_flag():
+    """Within the block a signal raises no exception but sets `stopping`, which wait() obeys; then KeyboardInterrupt.
+
+    An exception inside of Popen.poll() leaves its lock taken, and whoever then waits for the process waits for ever.
+    """
+    if threading.current_thread() is not threading.main_thread():  # only there signals raise exceptions
+        yield
+        return
+    handlers = {number: signal.signal(number, lambda *_: stopping.set()) for number in STOPS}
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        if stopping.is_set():
+            stopping.clear()
+            interrupt()
+
+
 def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
@@ -261,14 +282,15 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
                        *(["--log", log] if log else []), *common]
     logs = {name: record.with_suffix(f".{name}.log") for name in commands}
     processes = {}
-    try:
-        for name, command in commands.items():
-            with open(logs[name], "w") as output:
-                processes[name] = start(command, output if lockstep or name != "sim" else None)
-        wait(processes, scenario.get("duration_s", np.inf) * (10 if lockstep else 1) + 60)
-        lost = {name for name, process in processes.items() if name != "sim" and process.poll() is not None}
-    finally:
-        codes = {name: stop(process) for name, process in reversed(processes.items())}
+    with signals_as_flag():
+        try:
+            for name, command in commands.items():
+                with open(logs[name], "w") as output:
+                    processes[name] = start(command, output if lockstep or name != "sim" else None)
+            wait(processes, scenario.get("duration_s", np.inf) * (10 if lockstep else 1) + 60)
+            lost = {name for name, process in processes.items() if name != "sim" and process.poll() is not None}
+        finally:
+            codes = {name: stop(process) for name, process in reversed(processes.items())}
     sim = codes.pop("sim")
     if not lost and sim not in (HELD, BROKEN):
         reason = f": {last_line(logs['sim'])}" if lockstep else ""

@@ -80,6 +80,9 @@ void messages_that_came_earlier_are_received_without_time_left(void**) {
 void a_silent_controller_is_shown_as_stale_and_no_value_as_a_word(void**) {
   passes("watched_texts");
 }
+void a_signal_within_poll_ends_the_run(void**) {
+  passes("signal_within_poll");
+}
 void no_two_runs_share_a_network(void**) {
   passes("networks");
 }
@@ -124,6 +127,7 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_silent_controller_is_shown_as_stale_and_no_value_as_a_word,
                                 sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_signal_within_poll_ends_the_run, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(no_two_runs_share_a_network, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_camera_of_the_view_moves_aside_where_a_wall_would_hide_the_arm,
                                 sidestep::test::kill_processes),

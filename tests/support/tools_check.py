@@ -414,6 +414,17 @@ def busy_network():
                                "another controller runs on this LCM network (it sends on LEFT_STATUS)"), said
 
 
+INTERRUPTED_POLL = """import signal, subprocess
+poll, calls = subprocess.Popen.poll, []
+def interrupted(process):
+    calls.append(process)
+    if len(calls) == 100:
+        process._waitpid_lock.acquire()
+        signal.raise_signal(signal.SIGINT)
+        process._waitpid_lock.release()
+    return poll(process)
+subprocess.Popen.poll = interrupted
+"""
 TWO_ARMS = """import sys
 sys.path.insert(0, "host/tools")
 import runs
@@ -441,6 +452,13 @@ def second_signal():
         script.send_signal(number)
         assert script.wait(20) == 130
         assert running() == "0", running()
+
+
+def signal_within_poll():
+    """A signal that comes while subprocess asks for the state of a process ends the run, too."""
+    script = subprocess.run([sys.executable, "-c", INTERRUPTED_POLL + TWO_ARMS, runs.private_url()], cwd=ROOT,
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=30)
+    assert script.returncode == 130, script
 
 
 def late_receiver():
@@ -535,7 +553,7 @@ CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, ne
                                               panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              another_python, busy_network, networks, camera, second_signal,
+                                              another_python, busy_network, networks, camera, second_signal, signal_within_poll,
                                               late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
