@@ -76,7 +76,8 @@ def mark_events(axes, run, label=None):
 
 def mark_changes(axes, run):
     """Where the clearance jumps: what the tool may touch, as a can and what it stands on, does not count."""
-    mark_events(axes, run, "from here on the tool may touch other things: the curve jumps" if outcome.grasped(run) else None)
+    label = "from here on the tool may touch other things: the curve jumps"
+    mark_events(axes, run, label if outcome.grasped(run) else None)
 
 
 def plot_target_distance(axes, runs):
@@ -224,7 +225,8 @@ def plot_axis_distances(axes, runs):
         axes.plot(run.columns["t_s"], distance_m, **LAW_LINES[run.law],
                   label=f"{LAWS[run.law]}: least {distance_m.min():.4f} m")
     published_m = runs[0].scenario["published"]["axis_distance_m"]
-    axes.axhline(published_m, color=GREEN, linewidth=1.2, linestyle="-.", label=f"published least: {published_m:.4f} m\n(with unpublished gains and tool)")
+    axes.axhline(published_m, color=GREEN, linewidth=1.2, linestyle="-.",
+                 label=f"published least: {published_m:.4f} m\n(with unpublished gains and tool)")
     parameters = section(runs[0], "paper")
     for name, key, style in (("$d_1$", "d_1_m", ":"), ("$d_2$", "d_2_m", "--")):
         if key in parameters:

@@ -37,7 +37,8 @@ def speed_text(status):
 def foresight_text(status):
     """The foresight status; empty while the law needs no guide (DIRECT)."""
     if status.foresight == status.GUIDED:
-        return f"guided for the next {status.guide_horizon:.1f} s" if status.guide_horizon > 0 else "guided, at the end of the path"
+        left_s = status.guide_horizon
+        return f"guided for the next {left_s:.1f} s" if left_s > 0 else "guided, at the end of the path"
     return "no path known" if status.foresight == status.WAITING else ""
 
 

@@ -56,7 +56,8 @@ def ending(run):
 def arrival(run):
     if outcome.arrives(run):
         stays = outcome.at_target(run)
-        return f"arrives at {stays[-1][0]:.2f} s" if len(stays) == 1 else f"arrives again at {stays[-1][0]:.2f} s and stays"
+        at_s = f"at {stays[-1][0]:.2f} s"
+        return f"arrives {at_s}" if len(stays) == 1 else f"arrives again {at_s} and stays"
     return "arrives, but leaves again" if outcome.at_target(run) else "does not arrive"
 
 

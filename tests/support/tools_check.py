@@ -549,12 +549,12 @@ def hostile_bytes():
         assert wire.decoded(channel, whole) is not None
 
 
-CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance, allowed_touch,
-                                              panel_texts, quaternions, places,
+CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
+                                              allowed_touch, panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              another_python, busy_network, networks, camera, second_signal, signal_within_poll,
-                                              late_receiver, watched_texts, hostile_bytes, goals)}
+                                              another_python, busy_network, networks, camera, second_signal,
+                                              signal_within_poll, late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
