@@ -44,8 +44,8 @@ double bounding_radius_m(const Solid& solid);
 ///
 /// Separated solids: exact to 1e-9 m (two boxes: 1e-3 m, rarely a few 1e-3 m).
 /// Penetration of a sphere is exact. Penetration of a capsule is that of the deepest sphere along its axis: exact until
-/// the axis enters the other solid, then a lower bound of the depth. Other penetrations are upper bounds of
-/// the depth; that of two cylinders is at most what separates them across both axes.
+/// the axis enters the other solid, then a lower bound of the depth. Penetration of a box and a box or a cylinder is an
+/// upper bound of the depth, and so is that of two cylinders, which is at most what separates them across both axes.
 /// A mesh is a surface without volume: a solid wholly inside it counts as separated.
 /// Of solids that are farther apart than within_m some positive distance of at least within_m is returned, which costs
 /// much less for meshes.

@@ -42,18 +42,26 @@ def bodies(run):
     return list(found.values())
 
 
+def speed_mps(entry):
+    """Of an obstacle of the scenario."""
+    return np.linalg.norm(entry.get("velocity_mps", (0, 0, 0)))
+
+
+def is_slow(entry):
+    """Whether the arm may pass an obstacle of the scenario at less than the full clearance: it rests or is slow."""
+    return entry.get("kind") != "person" and speed_mps(entry) < SLOW_MPS
+
+
 def has_resting(run):
-    """Whether the arm may pass something at less than the full clearance, because it rests or is slow."""
-    return bool(solids.surroundings(run)) or any(
-        entry.get("kind") != "person" and np.linalg.norm(entry.get("velocity_mps", (0, 0, 0))) < SLOW_MPS
-        for entry in run.scenario["obstacles"])
+    """Whether the arm may pass something at less than the full clearance."""
+    return bool(solids.surroundings(run)) or any(map(is_slow, run.scenario["obstacles"]))
 
 
-def slowness(run, name):
-    """The speed of an obstacle that moves too slowly for the full clearance, in brackets; else empty."""
-    speeds = {obstacle_name(run, i): np.linalg.norm(entry.get("velocity_mps", (0, 0, 0)))
-              for i, entry in enumerate(run.scenario["obstacles"]) if moves(run, i)}
-    return f"({speeds[name]:g} m/s) " if 0 < speeds.get(name, 0) < SLOW_MPS else ""
+def slow_speed(run, name):
+    """The speed of an obstacle that moves, but too slowly for the full clearance, in brackets; else empty."""
+    slow = {obstacle_name(run, i): speed_mps(entry) for i, entry in enumerate(run.scenario["obstacles"])
+            if is_slow(entry) and speed_mps(entry) > 0 and moves(run, i)}
+    return f"({slow[name]:g} m/s) " if name in slow else ""
 
 
 def clearance(run):

@@ -27,7 +27,7 @@ def approach(run):
         return (f"touches {moment.name} {at(moment.row)}\n"
                 f"deepest: {-nearest_one.clearance_m * 1000:.1f} mm in {nearest_one.name} {at(nearest_one.row)}")
     text = (f"nearest: {nearest_one.clearance_m * 1000:.1f} mm to {nearest_one.name or 'what it may not touch'} "
-            f"{outcome.slowness(run, nearest_one.name)}{at(nearest_one.row)}")
+            f"{outcome.slow_speed(run, nearest_one.name)}{at(nearest_one.row)}")
     if moment.contact:
         return f"links touch each other {at(moment.row)}\n{text}"
     if moment.row != nearest_one.row:

@@ -53,7 +53,7 @@ class Stage:
         server.initial_camera.position = middle + camera_m(middle, self.surroundings)
         server.initial_camera.look_at = middle + LOOK_AT_M
         server.initial_camera.fov = FIELD_RAD
-        # Without a GPU, an environment map takes two thirds of the browser's time, and shadows as much again.
+        # Without a GPU, an environment map takes two thirds of the browser's time, and shadows cost most.
         server.scene.configure_environment_map(None)
         server.scene.configure_default_lights(cast_shadow=False)
         server.scene.add_light_ambient("/light", intensity=AMBIENT)
