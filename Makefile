@@ -165,8 +165,9 @@ view: all $(BUILD)/.python-view ## play SCENARIO live in the browser on PORT (70
 play: all $(BUILD)/.python-view ## show an arm without target and obstacles, and the commands that send them
 	@$(PYTHON) host/view/show.py host/scenarios/play.yaml --port $(PORT)
 
-view-test: all $(READY).view-test $(BUILD)/.python-view ## check screenshots of the view and of a report in headless Chromium, in build/figures
+view-test: all $(READY).view-test $(BUILD)/.python-view ## check view and report in headless Chromium: screenshots in build/figures, frames a second
 	@$(PYTHON) tests/view/picture.py
+	@$(PYTHON) tests/view/rate.py
 	@$(PYTHON) tests/view/report_picture.py
 
 spy: $(if $(DISPLAY),$(BUILD)/types.jar) ## start lcm-spy, which decodes the message types

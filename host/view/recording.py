@@ -12,7 +12,7 @@ FRAME_S = 0.03         # least time between two frames
 MOST_FRAMES = 4000
 CROWD = 100            # obstacles; more of them make the frames rarer
 SLOW = 6               # colours change every SLOW frames
-TRAIL_POINTS = 300
+TRAIL_POINTS = 150
 WORDS_M = (0.0, 0.0, -0.1)  # below an arm's base: where its state is written
 
 

@@ -11,23 +11,27 @@ MOVING_MPS = 0.01     # speed from which on an obstacle counts as moving
 UNKNOWN = (95, 95, 105)  # of a link whose clearance nobody knows
 TARGET, TRAIL, GUIDE, NEAREST = (13, 166, 76), (40, 40, 40), (0, 190, 190), (122, 72, 20)
 CROSS_M = 0.12          # from the target to each end of its cross hair, which an arm at the target does not hide
-MOST_NUMBERS = 24       # obstacles; more of them have no numbers
+MOST_NUMBERS = 12       # obstacles; more of them have no numbers
 ARROW_S = 0.5           # an arrow is the motion in this time
+HEAD_M, BARB_M = 0.06, 0.025  # of an arrow's head: its length, and how far its barbs reach from the line
 TRANSPARENT = 0.35      # opacity of the collision shapes over visual meshes
 OBSTACLE_KINDS = {obstacle_t.SPHERE: "sphere", obstacle_t.CAPSULE: "capsule", obstacle_t.BOX: "box",
                   obstacle_t.CYLINDER: "cylinder"}
+MOST_FACES = 800        # of a visual mesh; the Panda's, which have up to 20,000, lose up to 4 mm by it
 NO_LINES = np.zeros((0, 2, 3))
 
 
 def mesh_of(kind, size):
-    """The trimesh of a shape; size as in arm.Shape or obstacle_t. Its centre is the origin, its axis is z."""
-    if kind == "sphere":
-        return trimesh.creation.icosphere(subdivisions=2, radius=size[0])
+    """The trimesh of a shape; size as in arm.Shape or obstacle_t. Its centre is the origin, its axis is z.
+
+    Without a GPU, a browser needs most of its time for vertices: there are few.
+    """
     if kind == "box":
         return trimesh.creation.box(extents=size)
     if kind == "cylinder":
-        return trimesh.creation.cylinder(radius=size[0], height=size[1], sections=24)
-    mesh = trimesh.creation.capsule(radius=size[0], height=size[1], count=[16, 16])
+        return trimesh.creation.cylinder(radius=size[0], height=size[1], sections=16)
+    length_m = size[1] if kind == "capsule" else 0.0  # a sphere is a capsule without length
+    mesh = trimesh.creation.capsule(radius=size[0], height=length_m, count=[8, 12])
     mesh.apply_translation(-mesh.bounds.mean(axis=0))
     return mesh
 
@@ -35,6 +39,8 @@ def mesh_of(kind, size):
 def mesh_of_file(visual):
     mesh = trimesh.load(visual.file, force="mesh")
     mesh.merge_vertices(merge_tex=True, merge_norm=True)  # a fifth of the vertices, so of the page
+    if len(mesh.faces) > MOST_FACES:
+        mesh = mesh.simplify_quadric_decimation(face_count=MOST_FACES)
     mesh.apply_scale(visual.scale)
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = visual.rotation, visual.position
@@ -69,9 +75,10 @@ class ArmNodes:
                         for i, visual in enumerate(one.visuals)]
         self.solids = [self.add_shape(scene, f"{prefix}/{shape.frame}/shape{i}", shape)
                        for i, shape in enumerate(one.shapes)]
-        for i, joint in enumerate(one.chain):  # from joint to joint, where no shape covers the links
-            scene.add_line_segments(f"{prefix}/{i}/axis", np.array([[np.zeros(3), joint.offset]]), RESTING,
-                                    line_width=2.0)
+        for i, joint in enumerate(one.chain):  # from joint to joint, where no shape covers the link
+            if all(shape.frame != i for shape in one.shapes):
+                scene.add_line_segments(f"{prefix}/{i}/axis", np.array([[np.zeros(3), joint.offset]]), RESTING,
+                                        line_width=2.0)
         self.target = scene.add_icosphere(f"{prefix}/target", 0.03, color=TARGET, visible=False)
         scene.add_line_segments(f"{prefix}/target/cross", CROSS_M * np.stack([-np.eye(3), np.eye(3)], axis=1), TARGET,
                                 line_width=4.0)
@@ -135,8 +142,7 @@ class ObstacleNodes:
     def __init__(self, scene):
         self.scene, self.nodes = scene, {}
         self.turns = {}  # id -> the orientation that was sent; sending it again would cost as much as a position
-        self.arrows = scene.add_arrows("/velocities", NO_LINES, MOVING, shaft_radius=0.008, head_radius=0.02,
-                                       head_length=0.05, visible=False)
+        self.arrows = scene.add_line_segments("/velocities", NO_LINES, MOVING, line_width=4.0, visible=False)
         self.shows_arrows = True
 
     def draw(self, obstacles):
@@ -149,8 +155,7 @@ class ObstacleNodes:
             turn = tuple(obstacle.quaternion)
             if obstacle.shape != obstacle_t.SPHERE and self.turns.get(obstacle.id) != turn:
                 handle.wxyz = self.turns[obstacle.id] = turn
-        set_lines(self.arrows, [arrow_of(obstacle) for obstacle in obstacles if moves(obstacle)]
-                  if self.shows_arrows else NO_LINES)
+        set_lines(self.arrows, arrows_of([obstacle for obstacle in obstacles if self.shows_arrows and moves(obstacle)]))
 
     def handle_of(self, obstacle, numbered):
         """The node of the obstacle, with its id as a label; a new one when its shape has changed."""
@@ -169,8 +174,15 @@ def moves(obstacle):
     return np.linalg.norm(obstacle.velocity) > MOVING_MPS
 
 
-def arrow_of(obstacle):
-    """2 x 3: from the obstacle's centre, past its surface if it is a sphere, to where it is ARROW_S later."""
-    position, velocity = np.array(obstacle.position), np.array(obstacle.velocity)
-    outside = velocity / np.linalg.norm(velocity) * obstacle.size[0]
-    return np.stack([position, position + outside + velocity * ARROW_S])
+def arrows_of(obstacles):
+    """3 N x 2 x 3: an arrow's line and two barbs for each of the obstacles, all of which move.
+
+    It goes from the centre, past the surface of a sphere, to where the obstacle is ARROW_S later.
+    """
+    start = np.array([obstacle.position for obstacle in obstacles]).reshape(-1, 3)
+    velocity = np.array([obstacle.velocity for obstacle in obstacles]).reshape(-1, 3)
+    along = velocity / np.linalg.norm(velocity, axis=1, keepdims=True)
+    end = start + along * np.array([obstacle.size[0] for obstacle in obstacles])[:, None] + velocity * ARROW_S
+    across = np.cross(along, np.where(np.abs(along[:, 2:]) > 0.9, [1, 0, 0], [0, 0, 1]))  # horizontal, if it can be
+    barbs = [np.stack([end, end - HEAD_M * along + BARB_M * side], axis=1) for side in (across, -across)]
+    return np.concatenate([np.stack([start, end], axis=1), *barbs])

@@ -8,7 +8,7 @@ import arm
 import geometry
 import scene
 
-TRAIL_STEP_M = 0.01
+TRAIL_STEP_M = 0.02
 JUMP_M = 0.3          # a tool motion between two drawings that only a new run can cause
 AMBIENT = 1.2         # light from everywhere, so that no side of a shape is black
 CAMERA_M, LOOK_AT_M, FIELD_RAD = (1.1, -1.6, 1.1), (0.1, 0.0, 0.5), 0.75  # from the middle of the arms' bases

@@ -20,7 +20,7 @@ from arm_view import ArmView
 PERIOD_S = 1 / 30
 CATCH_UP_S = 0.1      # a drawing that is late by less shortens the wait for the next, so that the rate holds
 SLOW = 6              # colours and words change every SLOW frames
-TRAIL_POINTS = 120
+TRAIL_POINTS = 60
 
 
 class View:

@@ -5,6 +5,7 @@ import io
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ import runs
 import show
 
 PORT = 7070
+PLAY = ROOT / "host/scenarios/play.yaml"
 SCENE = (0, 0, 760, 560)  # px, the section of the screenshot without the panel, whose key has the same colours
 SETTLE_S = 3.0  # until the page is drawn
 LEAST_PIXELS = {"arm": 4000, "obstacles": 1500, "target": 60}
@@ -63,12 +65,26 @@ def photograph(page, limit_s=40):
             return image, counts
 
 
-def open_page(page, limit_s=30):
+@contextmanager
+def programs(scenario_file, scenario, url, senders):
+    """Controller, simulator and senders (a script of host/tools with its arguments each) while the block runs."""
+    started = [runs.start([*command, "--lcm-url", url], subprocess.DEVNULL) for command in (
+        [runs.BUILD / "controller", "--config", runs.config_of(scenario)],
+        [runs.BUILD / "sim", "--scenario", scenario_file, "--quiet"],
+        *([sys.executable, f"host/tools/{script}", *words] for script, *words in senders))]
+    try:
+        yield
+    finally:
+        for program in reversed(started):
+            runs.stop(program)
+
+
+def open_page(page, query="", limit_s=30):
     """Opens the page, once the view serves it."""
     deadline = time.monotonic() + limit_s
     while True:
         try:
-            page.get(f"http://localhost:{PORT}")
+            page.get(f"http://localhost:{PORT}/{query}")
             return
         except WebDriverException:
             pass
@@ -87,26 +103,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--output", type=Path, default=runs.FIGURES / "view.png")
     output = parser.parse_args().output
-    scenario_file, url = ROOT / "host/scenarios/play.yaml", runs.private_url()
-    with show.viewer(runs.load_scenario(scenario_file), PORT, url):
+    scenario, url = runs.load_scenario(PLAY), runs.private_url()
+    with show.viewer(scenario, PORT, url):
         page = browser()
         try:
             open_page(page)
             time.sleep(SETTLE_S)
             close_notes(page)
             empty = pixels(Image.open(io.BytesIO(page.get_screenshot_as_png())))
-            programs = [runs.start([*command, "--lcm-url", url], subprocess.DEVNULL) for command in (
-                [runs.BUILD / "controller", "--config", "firmware/config/lwa3.yaml"],
-                [runs.BUILD / "sim", "--scenario", scenario_file, "--quiet"],
-                [sys.executable, "host/tools/send_target.py", *TARGET],
-                [sys.executable, "host/tools/send_obstacles.py", *OBSTACLES])]
-            try:
+            with programs(PLAY, scenario, url, [["send_target.py", *TARGET], ["send_obstacles.py", *OBSTACLES]]):
                 time.sleep(SETTLE_S)
                 image, counts = photograph(page)
                 foreign = foreign_addresses(page)
-            finally:
-                for program in reversed(programs):
-                    runs.stop(program)
         finally:
             page.quit()
     output.parent.mkdir(parents=True, exist_ok=True)
