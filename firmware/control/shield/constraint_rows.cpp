@@ -42,24 +42,39 @@ bool is_within(const VelocityRange& inner, const VelocityRange& outer) {
          (inner.upper_radps.array() <= outer.upper_radps.array()).all();
 }
 
-/// Puts a row into a full list in place of the least urgent one, if it is more urgent. Urgency: the tier, then the
-/// violation by the worst velocity of the range.
-void replace_least_urgent(const VelocityRange& range, const ConstraintRow& row, ConstraintRows& rows) {
-  const auto violation_mps = [&](const ConstraintRow& r) { return r.bound - least_mps(r.row, range); };
-  const auto is_less_urgent = [&](const ConstraintRow& a, const ConstraintRow& b) {
-    return a.tier != b.tier ? a.tier > b.tier : violation_mps(a) < violation_mps(b);
-  };
-  const auto least = std::min_element(rows.begin(), rows.end(), is_less_urgent);
-  if (is_less_urgent(*least, row)) *least = row;
-}
+/// Fills a list of rows. Into a full list a row goes in place of the least urgent one, if it is more urgent. Urgency:
+/// the tier, then the violation by the worst velocity of the range that the list is for.
+class RowFiller {
+ public:
+  explicit RowFiller(ConstraintRows& rows) : rows_(rows) {}
 
-void add(const VelocityRange& range, const JointVector& row, double bound, Tier tier, double other_bound,
-         ConstraintRows& rows) {
-  if (rows.is_full())
-    replace_least_urgent(range, {row, bound, tier, other_bound}, rows);
-  else
-    rows.emplace(row, bound, tier, other_bound);
-}
+  void add(const ConstraintRow& row, double violation_mps) {
+    if (!rows_.is_full()) {
+      rows_.add(row);
+      violations_mps_.add(violation_mps);
+      return;
+    }
+    if (least_urgent_ < 0) find_least_urgent();
+    if (!is_less_urgent(least_urgent_, row.tier, violation_mps)) return;
+    rows_[least_urgent_] = row;
+    violations_mps_[least_urgent_] = violation_mps;
+    least_urgent_ = -1;
+  }
+
+ private:
+  bool is_less_urgent(int i, Tier tier, double violation_mps) const {
+    return rows_[i].tier != tier ? rows_[i].tier > tier : violations_mps_[i] < violation_mps;
+  }
+  void find_least_urgent() {
+    least_urgent_ = 0;
+    for (int i = 1; i < rows_.size(); ++i)
+      if (is_less_urgent(i, rows_[least_urgent_].tier, violations_mps_[least_urgent_])) least_urgent_ = i;
+  }
+
+  ConstraintRows& rows_;
+  BoundedList<double, kMaxRows> violations_mps_;
+  int least_urgent_ = -1;  ///< index into rows_; -1: not known
+};
 
 /// Distance barrier of one tier: d' >= -gain (d - clearance).
 double barrier(double gain_per_s, double distance_m, double clearance_m) {
@@ -105,7 +120,9 @@ class RowMaker {
         range_(range),
         within_(is_within(range, sustainable)),
         link_mps_(link_speeds()),
-        rows_(rows) {}
+        rows_(rows),
+        plan_(rows.plan),
+        step_(rows.step) {}
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
     const BodyShape &a = shape(self.first), &b = shape(self.second);
@@ -190,7 +207,9 @@ class RowMaker {
     const double touched_mps = settings_.person_gain_per_s * settings_.person_clearance_m;
     const double bound_mps = std::min(demand_mps * std::min(1.0, most_mps / touched_mps), most_mps);
     const double scale = std::sqrt(input_.person_weight / input_.comfort_weight);
-    if (bound_mps > least) add(sustainable_, scale * row, scale * bound_mps, Tier::kComfort, 0.0, rows_.plan);
+    if (!(bound_mps > least)) return;
+    const ConstraintRow scaled{scale * row, scale * bound_mps, Tier::kComfort};
+    plan_.add(scaled, scaled.bound - least_mps(scaled.row, sustainable_));
   }
 
   /// Two links of which one turns past the other.
@@ -248,14 +267,15 @@ class RowMaker {
   double add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
     const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
     const bool counts = bound_mps > least;
-    if (counts) add(sustainable_, row, bound_mps, Tier::kHard, 0.0, rows_.plan);
+    if (counts) plan_.add({row, bound_mps, Tier::kHard}, bound_mps - least);
     if (within_ && !counts) return bound_mps;
-    if (bound_mps > least_mps(row, range_)) add(range_, row, bound_mps, Tier::kHard, 0.0, rows_.step);
+    const double violation_mps = bound_mps - least_mps(row, range_);
+    if (violation_mps > 0.0) step_.add({row, bound_mps, Tier::kHard}, violation_mps);
     return bound_mps;
   }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
     bound_mps = std::min(bound_mps, kLargestDemand_mps);
-    if (bound_mps > least) add(sustainable_, row, bound_mps, tier, other_bound_mps, rows_.plan);
+    if (bound_mps > least) plan_.add({row, bound_mps, tier, other_bound_mps}, bound_mps - least);
   }
 
   /// The direction in which a link leaves the path of an obstacle that comes straight at it: the one in which it is
@@ -277,6 +297,7 @@ class RowMaker {
   const bool within_;  ///< range_ lies in sustainable_: then the least value of a row is no smaller there
   const BoundedList<double, kMaxShapes> link_mps_;
   RowSets& rows_;
+  RowFiller plan_, step_;
   double least_room_m_ = std::numeric_limits<double>::infinity();
 };
 
