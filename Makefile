@@ -101,8 +101,10 @@ test: all $(TESTED) $(TESTS) ## run all tests; the last line is: N passed, N fai
 faults: all $(TESTED) $(FAULTS) ## run the fault tests TIMES (10) times; tests/faults/README.md lists the faults
 	@for n in $$(seq $(or $(TIMES),10)); do echo "round $$n"; $(PYTHON) tests/run.py $(FAULTS) || exit 1; done
 
-peers-test: all $(BUILD)/.python-peers ## compare with Pinocchio, play 100 witnessed scenes with other arms and Drake's iiwa (10 min)
+peers-test: all $(BUILD)/.python-peers ## compare with Pinocchio, let other arms reach and play 100 scenes each, play with Drake's iiwa (15 min)
 	@$(PYTHON) tests/peers/kinematics.py
+	@$(PYTHON) tests/peers/configurations.py
+	@$(PYTHON) tests/peers/reaches.py
 	@$(PYTHON) tests/peers/iiwa.py
 	@$(PYTHON) tests/peers/scenes.py
 

@@ -9,6 +9,7 @@
 
 #include "firmware/base/command_line.h"
 #include "firmware/control/types/settings.h"
+#include "firmware/model/gjk.h"
 #include "firmware/model/kinematics.h"
 #include "firmware/model/load/load_arm.h"
 #include "firmware/model/load/srdf.h"
@@ -23,7 +24,7 @@ constexpr double kShortShape_m = 1e-3;
 struct Arguments {
   std::string urdf, base, tip;
   MeshOptions meshes;
-  bool forward_kinematics = false;
+  bool forward_kinematics = false, self_clearance = false;
 };
 
 const char* unit_of(const Arm& arm, int joint) {
@@ -108,8 +109,9 @@ std::vector<std::string> odd_shapes(const Arm& arm, const SelfPairs& pairs) {
   return odd;
 }
 
-/// Prints the pose of the tip (x y z, then the rotation by rows) for every line of joint positions on standard input.
-void print_poses(const Arm& arm) {
+/// Calls print with the poses of the links for every line of joint positions on standard input.
+template <typename Print>
+void for_each_configuration(const Arm& arm, Print print) {
   JointVector q_rad(arm.joints);
   std::string line, more;
   for (int number = 1; std::getline(std::cin, line); ++number) {
@@ -118,12 +120,33 @@ void print_poses(const Arm& arm) {
     for (double& angle_rad : q_rad) stream >> angle_rad;
     if (!stream || stream >> more)
       throw std::runtime_error(fmt::format("standard input, line {}: not {} joint positions", number, arm.joints));
-    const LinkPoses poses = forward_kinematics(arm, q_rad);
-    const Matrix3& r = poses.tool_rotation;
-    fmt::print("{:.17g} {:.17g} {:.17g}", poses.tool_position.x(), poses.tool_position.y(), poses.tool_position.z());
-    for (int row = 0; row < 3; ++row) fmt::print(" {:.17g} {:.17g} {:.17g}", r(row, 0), r(row, 1), r(row, 2));
-    fmt::print("\n");
+    print(forward_kinematics(arm, q_rad));
   }
+}
+
+/// The pose of the tip: x y z, then the rotation by rows.
+void print_pose(const LinkPoses& poses) {
+  const Matrix3& r = poses.tool_rotation;
+  fmt::print("{:.17g} {:.17g} {:.17g}", poses.tool_position.x(), poses.tool_position.y(), poses.tool_position.z());
+  for (int row = 0; row < 3; ++row) fmt::print(" {:.17g} {:.17g} {:.17g}", r(row, 0), r(row, 1), r(row, 2));
+  fmt::print("\n");
+}
+
+/// Of the kept pair that is nearest to its clearance: the distance less the clearance, the distance, the links.
+void print_nearest_pair(const Arm& arm, const std::vector<SelfPair>& pairs, const LinkPoses& poses) {
+  double least_m = HUGE_VAL, distance_m = HUGE_VAL;
+  std::string links = "-";
+  for (const SelfPair& pair : pairs) {
+    const LinkShape& one = arm.shapes[static_cast<size_t>(pair.first)];
+    const LinkShape& other = arm.shapes[static_cast<size_t>(pair.second)];
+    const ConvexSolid a = solid_of(poses, one), b = solid_of(poses, other);
+    const double found_m = gap_between(a, b, a.centre - b.centre).distance_m;
+    if (found_m - pair.clearance_m >= least_m) continue;
+    least_m = found_m - pair.clearance_m;
+    distance_m = found_m;
+    links = one.link + " " + other.link;
+  }
+  fmt::print("{:.6f} {:.6f} {}\n", least_m, distance_m, links);
 }
 
 void describe(CommandLine& app, Arguments& arguments) {
@@ -136,20 +159,27 @@ void describe(CommandLine& app, Arguments& arguments) {
       .range(1, 8);
   app.add_flag("--fk", arguments.forward_kinematics,
                "read joint positions from standard input, write poses of the tip: x y z and the rotation by rows");
+  app.add_flag("--self", arguments.self_clearance,
+               "read joint positions from standard input, write the distance of two links less its clearance, where "
+               "that is least, the distance, and their names; less than 0 is forbidden");
   app.footer("Exit codes: 0 nothing odd, 1 something odd, 2 the controller would refuse the arm.");
 }
 
 int run(const Arguments& arguments) {
   const Arm arm = load_arm(arguments.urdf, arguments.base, arguments.tip, arguments.meshes);
   if (arguments.forward_kinematics) {
-    print_poses(arm);
+    for_each_configuration(arm, print_pose);
+    return 0;
+  }
+  const std::string srdf = srdf_beside(arguments.urdf);
+  const SelfPairs pairs = find_self_pairs(arm, ShieldSettings{}.self_clearance_m,
+                                          srdf.empty() ? std::vector<LinkPair>() : disabled_collisions(srdf));
+  if (arguments.self_clearance) {
+    for_each_configuration(arm, [&](const LinkPoses& poses) { print_nearest_pair(arm, pairs.kept, poses); });
     return 0;
   }
   print_joints(arm);
   print_shapes(arm);
-  const std::string srdf = srdf_beside(arguments.urdf);
-  const SelfPairs pairs = find_self_pairs(arm, ShieldSettings{}.self_clearance_m,
-                                          srdf.empty() ? std::vector<LinkPair>() : disabled_collisions(srdf));
   fmt::print(
       "pairs of shapes that are kept apart from each other: {}; they forbid {:.1f} % of the configurations without "
       "contact\n",

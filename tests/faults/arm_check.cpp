@@ -83,6 +83,21 @@ void invalid_joint_positions_are_refused_with_their_line(void**) {
   }
 }
 
+void the_links_nearest_to_their_clearance_are_found_for_every_configuration(void**) {
+  Process process({"/bin/sh", "-c",
+                   "printf '0 0 0 0 0 0 0\\n0 0 0 3 0 0 0\\n' | build/arm-check urdf/lwa3.urdf --base base_link "
+                   "--tip tool --self"});
+  const int code = process.wait(kLimit_s);
+  std::istringstream lines(process.output());
+  double room_m = 0.0, distance_m = 0.0, folded_m = 0.0;
+  std::string one, other;
+  assert_true(static_cast<bool>(lines >> room_m >> distance_m >> one >> other >> folded_m));
+  assert_int_equal(code, 0);
+  check(room_m > 0.0 && folded_m < 0.0, "stretched %g, folded %g", room_m, folded_m);
+  check_near(distance_m - room_m, 0.02, 1e-6);
+  assert_string_not_equal(one.c_str(), other.c_str());
+}
+
 }  // namespace
 
 int main() {
@@ -91,6 +106,8 @@ int main() {
       cmocka_unit_test_teardown(a_mesh_is_enclosed_and_its_excess_reported, test::kill_processes),
       cmocka_unit_test_teardown(oddities_are_reported_with_code_1, test::kill_processes),
       cmocka_unit_test_teardown(invalid_joint_positions_are_refused_with_their_line, test::kill_processes),
+      cmocka_unit_test_teardown(the_links_nearest_to_their_clearance_are_found_for_every_configuration,
+                                test::kill_processes),
       cmocka_unit_test_teardown(an_arm_that_the_controller_refuses_ends_with_code_2, test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -18,7 +18,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uint64_t kVersion = 8;  // raise it whenever the result changes
+constexpr std::uint64_t kVersion = 11;  // raise it whenever the result changes
 constexpr int kSamples = 5000;
 constexpr double kTouchingShare = 0.5;  // of the samples; two links that touch in more overlap by construction
 constexpr double kForbiddenShare = 0.015;
@@ -32,13 +32,23 @@ constexpr double kLeastClearance_m = 0.001;
 // clearance (the campaign's boxes, ten joints).
 constexpr double kLeastClearanceOfLongChain_m = 0.004;
 constexpr int kLongChain = 9;  // joints
+// Of the samples without contact: what the least clearance may forbid by one pair that adjoins or of an arm with
+// meshes, whose pieces are larger than they. Such links, as those of a humanoid's torso, may be nearer by construction.
+constexpr double kShareOfLeast = 0.005;
+constexpr double kLeastOfAll_m = 0.0002;
 
-bool neighbours(const Arm& arm, int a, int b) {
+/// Whether the chain connects the links of two shapes with no shape on a body between them.
+bool adjoin(const Arm& arm, int a, int b) {
   const LinkShape &one = arm.shapes[a], &other = arm.shapes[b];
-  if (one.body != other.body && (one.below_arm || other.below_arm)) return false;  // the base link lies between them
+  if (one.below_arm || other.below_arm || one.other_joint >= 0 || other.other_joint >= 0) return false;
   const auto [low, high] = std::minmax(one.body, other.body);
   return std::none_of(arm.shapes.begin(), arm.shapes.end(),
                       [low = low, high = high](const LinkShape& s) { return s.body > low && s.body < high; });
+}
+
+bool neighbours(const Arm& arm, int a, int b) {
+  const int apart = std::abs(arm.shapes[a].body - arm.shapes[b].body);
+  return apart == 0 || (apart == 1 && adjoin(arm, a, b));
 }
 
 bool is_ignored(const Arm& arm, int a, int b, const std::vector<LinkPair>& ignored) {
@@ -71,6 +81,7 @@ double distance_m(const PosedShape& a, const PosedShape& b, double enough_m) {
 /// A pair and its distances below the clearance, each with the index of its sample.
 struct SampledPair {
   int first, second;
+  bool adjoin;
   std::vector<std::pair<int, double>> near_m;
 };
 
@@ -78,7 +89,7 @@ std::vector<SampledPair> sample_pairs(const Arm& arm, const std::vector<LinkPair
   std::vector<SampledPair> pairs;
   for (int b = 0; b < static_cast<int>(arm.shapes.size()); ++b)
     for (int a = 0; a < b; ++a)
-      if (!neighbours(arm, a, b) && !is_ignored(arm, a, b, ignored)) pairs.push_back({a, b, {}});
+      if (!neighbours(arm, a, b) && !is_ignored(arm, a, b, ignored)) pairs.push_back({a, b, adjoin(arm, a, b), {}});
   std::mt19937 random(1);
   std::vector<Capsule> capsules(arm.shapes.size());
   for (int i = 0; i < kSamples; ++i) {
@@ -101,9 +112,10 @@ LinkPair links_of(const Arm& arm, const SampledPair& pair) {
 /// The samples in which no pair touches.
 class FreeSamples {
  public:
-  FreeSamples(const Arm& arm, const std::vector<SampledPair>& pairs, double clearance_m)
+  FreeSamples(const Arm& arm, const std::vector<SampledPair>& pairs, double clearance_m, bool has_pieces)
       : pairs_(pairs),
         clearance_m_(clearance_m),
+        has_pieces_(has_pieces),
         least_m_(arm.joints < kLongChain ? kLeastClearance_m : kLeastClearanceOfLongChain_m),
         is_free_(kSamples, true) {
     for (const SampledPair& pair : pairs)
@@ -140,7 +152,9 @@ class FreeSamples {
         return index < sorted.size() ? sorted[index] : clearance_m_;
       };
       const double sampled_m = std::min(at(quantile), most_m_[clearances.size()]);
-      clearances.push_back(std::max(sampled_m, std::min(least_m_, 0.5 * at(0.5))));
+      const double few_m =
+          has_pieces_ || pairs_[clearances.size()].adjoin ? std::max(at(kShareOfLeast), kLeastOfAll_m) : HUGE_VAL;
+      clearances.push_back(std::max(sampled_m, std::min({least_m_, few_m, 0.5 * at(0.5)})));
     }
     return clearances;
   }
@@ -160,7 +174,9 @@ class FreeSamples {
 
  private:
   const std::vector<SampledPair>& pairs_;
-  const double clearance_m_, least_m_;
+  const double clearance_m_;
+  const bool has_pieces_;
+  const double least_m_;
   std::vector<bool> is_free_;
   std::ptrdiff_t count_ = 0;
   std::vector<double> most_m_;  ///< of each pair: the least distance of two links that are near by construction
@@ -186,13 +202,13 @@ SelfPairs compute(const Arm& arm, double clearance_m, const std::vector<LinkPair
   const std::set<LinkPair> overlapping = overlapping_links(arm, pairs);
   const auto overlaps = [&](const SampledPair& pair) { return overlapping.count(links_of(arm, pair)) > 0; };
   for (const SampledPair& pair : pairs)
-    if (overlaps(pair)) result.overlaps.emplace_back(pair.first, pair.second);
+    if (overlaps(pair) && !pair.adjoin) result.overlaps.emplace_back(pair.first, pair.second);
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), overlaps), pairs.end());
 
   const bool has_pieces =
       std::any_of(arm.shapes.begin(), arm.shapes.end(), [](const LinkShape& s) { return s.polyhedron != nullptr; });
   const double most_share = has_pieces ? kForbiddenShareOfPieces : kForbiddenShare;
-  const FreeSamples free(arm, pairs, clearance_m);
+  const FreeSamples free(arm, pairs, clearance_m, has_pieces);
   double low = 0.0, high = 1.0;
   if (free.forbidden_share(free.clearances_m(high)) <= most_share) low = high;
   for (int i = 0; i < 20 && low < high; ++i) {

@@ -119,27 +119,60 @@ Arm with_links_near_by_construction() {
 void links_that_no_configuration_keeps_apart_forbid_next_to_nothing(void**) {
   const Arm arm = with_links_near_by_construction();
   const SelfPairs pairs = find_self_pairs(arm, 0.02);
-  assert_true(names(arm, pairs.kept) == std::vector<std::string>({"l0 l6"}));
+  assert_true(names(arm, pairs.kept) == std::vector<std::string>({"l0 l6", "l1 l6"}));
   check_near(pairs.kept[0].clearance_m, 0.012, 5e-5);
   check(forbidden_share(arm, pairs) < 0.002, "%g", forbidden_share(arm, pairs));
 }
 
+/// Of two links with joints between them but no shape: one that always touch, or one that can fold together.
+void links_with_no_shape_between_are_kept_apart_if_they_can_be(void**) {
+  const auto arm_with = [](const std::string& shape_of_last) {
+    std::string links = "<link name='l0'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>";
+    std::string joints;
+    for (int i = 1; i <= 6; ++i) {
+      const std::string name = "l" + std::to_string(i);
+      links +=
+          "<link name='" + name + "'>" + (i == 6 ? "<collision>" + shape_of_last + "</collision>" : "") + "</link>";
+      joints += "<joint name='j" + std::to_string(i) + "' type='revolute'><parent link='l" + std::to_string(i - 1) +
+                "'/><child link='" + name + "'/><axis xyz='" + (i % 2 ? "0 0 1" : "1 0 0") +
+                "'/><limit lower='-3' upper='3' velocity='1' effort='1'/></joint>";
+    }
+    return load_arm(test::scratch_file("joined.urdf", "<robot name='joined'>" + links + joints + "</robot>"), "l0",
+                    "l6");
+  };
+  const char* const at = "<origin xyz='0 0 %s'/><geometry><cylinder radius='0.02' length='0.1'/></geometry>";
+  const auto kept = [&](const char* z_m) {
+    std::string shape = at;
+    shape.replace(shape.find("%s"), 2, z_m);
+    return find_self_pairs(arm_with(shape), 0.02);
+  };
+  assert_true(kept("0").kept.empty() && kept("0").overlaps.empty());
+  const SelfPairs beside = kept("0.13");
+  assert_int_equal(beside.kept.size(), 1);
+  assert_true(beside.forbidden_share > 0.0 && beside.forbidden_share <= 0.0152);
+}
+
+/// The arm with its first shape counting as a piece of a mesh. Its form remains.
+Arm with_a_piece(Arm arm) {
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+  arm.shapes.front().polyhedron = std::make_shared<Polyhedron>(polyhedron_of(convex_hull(corners)));
+  return arm;
+}
+
 /// The pieces alone forbid what they exceed their mesh.
 void clearances_forbid_less_where_pieces_stand_for_meshes(void**) {
-  Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
-  const SelfPairs exact = find_self_pairs(arm, 0.02);
-  const auto box = std::find_if(arm.shapes.begin(), arm.shapes.end(),
-                                [](const LinkShape& s) { return !s.is_capsule && s.solid.kind == CoreKind::kBox; });
-  assert_true(box != arm.shapes.end());
-  std::vector<Vector3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).cwiseProduct(box->solid.half_m));
-  box->polyhedron = std::make_shared<Polyhedron>(polyhedron_of(convex_hull(corners)));
-  box->solid.polyhedron = box->polyhedron.get();
-  box->solid.kind = CoreKind::kPolyhedron;
-  const SelfPairs pieces = find_self_pairs(arm, 0.02);
+  const Arm arm = load_arm("tests/data/arm8.urdf", "mount", "flange");
+  const SelfPairs exact = find_self_pairs(arm, 0.02), pieces = find_self_pairs(with_a_piece(arm), 0.02);
   check(exact.forbidden_share > 0.012 && exact.forbidden_share <= 0.015, "%g", exact.forbidden_share);
   check(pieces.forbidden_share > 0.005 && pieces.forbidden_share <= 0.012, "%g", pieces.forbidden_share);
+}
+
+void the_least_clearance_of_a_pair_forbids_little_where_pieces_stand_for_meshes(void**) {
+  const Arm arm = load_arm("tests/data/arm10.urdf", "l0", "l10");
+  const SelfPairs exact = find_self_pairs(arm, 0.02), pieces = find_self_pairs(with_a_piece(arm), 0.02);
+  check(exact.worst_share > 0.005 && pieces.worst_share <= 0.0052, "%g, %g", exact.worst_share, pieces.worst_share);
+  for (const SelfPair& pair : pieces.kept) check(pair.clearance_m >= 0.0002, "%g", pair.clearance_m);
 }
 
 void the_pair_that_forbids_most_is_named(void**) {
@@ -238,7 +271,9 @@ int main() {
       cmocka_unit_test(few_free_configurations_are_forbidden_also_where_links_are_near_by_construction),
       cmocka_unit_test(links_that_no_configuration_keeps_apart_forbid_next_to_nothing),
       cmocka_unit_test(the_clearance_of_pairs_that_are_mostly_far_apart_is_the_whole_one),
+      cmocka_unit_test(links_with_no_shape_between_are_kept_apart_if_they_can_be),
       cmocka_unit_test(clearances_forbid_less_where_pieces_stand_for_meshes),
+      cmocka_unit_test(the_least_clearance_of_a_pair_forbids_little_where_pieces_stand_for_meshes),
       cmocka_unit_test(the_pair_that_forbids_most_is_named),
       cmocka_unit_test(links_of_a_long_chain_keep_more_than_those_of_a_short_one),
       cmocka_unit_test(ignored_links_form_no_pair),
