@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compare which configurations arm-check allows with those in which the meshes touch, by Pinocchio and Coal.
 
-Fails if the controller allows one in which links touch, forbids more than 3 % of the others, or more than 0.3 % of those
-in which all links are 20 mm apart.
+Fails if the controller allows one in which links touch, forbids more than 3 % of the others, or more than 0.3 % of
+those in which all links are 20 mm apart.
 """
 import argparse
 import os
