@@ -48,15 +48,15 @@ class RowFiller {
  public:
   explicit RowFiller(ConstraintRows& rows) : rows_(rows) {}
 
-  void add(const ConstraintRow& row, double violation_mps) {
+  void add(const JointVector& row, double bound, Tier tier, double violation_mps, double other_bound = 0.0) {
     if (!rows_.is_full()) {
-      rows_.add(row);
+      rows_.emplace(row, bound, tier, other_bound);
       violations_mps_.add(violation_mps);
       return;
     }
     if (least_urgent_ < 0) find_least_urgent();
-    if (!is_less_urgent(least_urgent_, row.tier, violation_mps)) return;
-    rows_[least_urgent_] = row;
+    if (!is_less_urgent(least_urgent_, tier, violation_mps)) return;
+    rows_[least_urgent_] = {row, bound, tier, other_bound};
     violations_mps_[least_urgent_] = violation_mps;
     least_urgent_ = -1;
   }
@@ -208,8 +208,8 @@ class RowMaker {
     const double bound_mps = std::min(demand_mps * std::min(1.0, most_mps / touched_mps), most_mps);
     const double scale = std::sqrt(input_.person_weight / input_.comfort_weight);
     if (!(bound_mps > least)) return;
-    const ConstraintRow scaled{scale * row, scale * bound_mps, Tier::kComfort};
-    plan_.add(scaled, scaled.bound - least_mps(scaled.row, sustainable_));
+    const JointVector scaled = scale * row;
+    plan_.add(scaled, scale * bound_mps, Tier::kComfort, scale * bound_mps - least_mps(scaled, sustainable_));
   }
 
   /// Two links of which one turns past the other.
@@ -267,15 +267,15 @@ class RowMaker {
   double add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
     const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
     const bool counts = bound_mps > least;
-    if (counts) plan_.add({row, bound_mps, Tier::kHard}, bound_mps - least);
+    if (counts) plan_.add(row, bound_mps, Tier::kHard, bound_mps - least);
     if (within_ && !counts) return bound_mps;
     const double violation_mps = bound_mps - least_mps(row, range_);
-    if (violation_mps > 0.0) step_.add({row, bound_mps, Tier::kHard}, violation_mps);
+    if (violation_mps > 0.0) step_.add(row, bound_mps, Tier::kHard, violation_mps);
     return bound_mps;
   }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
     bound_mps = std::min(bound_mps, kLargestDemand_mps);
-    if (bound_mps > least) plan_.add({row, bound_mps, tier, other_bound_mps}, bound_mps - least);
+    if (bound_mps > least) plan_.add(row, bound_mps, tier, bound_mps - least, other_bound_mps);
   }
 
   /// The direction in which a link leaves the path of an obstacle that comes straight at it: the one in which it is
