@@ -14,6 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "host/tools"))
 import arm
+import runs
 import wire
 from arm_view import ArmView
 
@@ -86,7 +87,8 @@ def main():
     arm.add_robot(parser)
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in runs.STOPS:
+        signal.signal(number, runs.interrupt)
     try:
         View(arms_of(arguments), arguments.lcm_url, arguments.port, arguments.steer).run()
     except KeyboardInterrupt:
