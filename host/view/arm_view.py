@@ -137,6 +137,11 @@ class ArmView:
                  if shape.link == status.nearest_link for other in others]
         return min(lines, key=lambda line: line[0])[1] if lines else None
 
+    def nearest_number(self, latest):
+        """The id of the obstacle that the controller states to be nearest; None for another thing."""
+        status = latest.get(self.names["CONTROLLER_STATUS"])
+        return status.nearest_obstacle if status and status.nearest_obstacle >= 0 else None
+
     def guide(self, latest):
         status = latest.get(self.names["CONTROLLER_STATUS"])
         guided = status and status.guide_horizon > 0 and is_near(status.guide_tool)

@@ -18,7 +18,7 @@ def key():
     rows += [(BANDS[-1][1], f"link, clearance above {bounds[-1]} m"),
              (UNKNOWN, "link, clearance unknown"),
              (MOVING, f"moving obstacle; arrow: {ARROW_S:g} s ahead"), (RESTING, "obstacle at rest, surroundings"),
-             (NEAREST, "line: from the arm to the nearest obstacle"), (TARGET, "target"),
+             (NEAREST, "line: from the arm to the nearest obstacle; numbers: obstacles' ids"), (TARGET, "target"),
              (TRAIL, "path of the tool"), (GUIDE, "path that foresight has planned")]
     return STYLE + "".join(
         f"<div><span style='color:rgb{colour}'>&#9632;</span> {words}</div>" for colour, words in rows) + "</div>"

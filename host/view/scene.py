@@ -11,7 +11,7 @@ MOVING_MPS = 0.01     # speed from which on an obstacle counts as moving
 UNKNOWN = (95, 95, 105)  # of a link whose clearance nobody knows
 TARGET, TRAIL, GUIDE, NEAREST = (13, 166, 76), (40, 40, 40), (0, 190, 190), (122, 72, 20)
 CROSS_M = 0.12          # from the target to each end of its cross hair, which an arm at the target does not hide
-MOST_NUMBERS = 12       # obstacles; more of them have no numbers
+MOST_NUMBERS = 12       # obstacles; of more of them, only the nearest has its number
 ARROW_S = 0.5           # an arrow is the motion in this time
 HEAD_M, BARB_M = 0.06, 0.025  # of an arrow's head: its length, and how far its barbs reach from the line
 TRANSPARENT = 0.35      # opacity of the collision shapes over visual meshes
@@ -85,6 +85,7 @@ class ArmNodes:
         self.trail, self.guide, self.nearest = (
             scene.add_line_segments(f"{prefix}/{name}", NO_LINES, colour, line_width=width, visible=False)
             for name, colour, width in (("trail", TRAIL, 3.0), ("guide", GUIDE, 6.0), ("nearest", NEAREST, 3.0)))
+        self.number = scene.add_label(f"{prefix}/number", "", anchor="center-center", visible=False)
 
     def add_shape(self, scene, name, shape):
         handle = add_mesh(scene, name, mesh_of(shape.kind, shape.size), visible=not self.visuals,
@@ -117,14 +118,19 @@ class ArmNodes:
             for handle in handles:
                 handle.visible = visible
 
-    def mark(self, target, trail, guide, nearest):
-        """target: 3 or None; trail and guide: points, m; nearest: 2 x 3, m, or None."""
+    def mark(self, target, trail, guide, nearest, number):
+        """target: 3 or None; trail and guide: points, m; nearest: 2 x 3, m, or None; number: at its end, or None."""
         self.target.visible = target is not None
         if target is not None:
             self.target.position = target
         set_lines(self.trail, segments(trail))
         set_lines(self.guide, segments(guide))
         set_lines(self.nearest, NO_LINES if nearest is None else [nearest])
+        self.number.visible = nearest is not None and number is not None
+        if self.number.visible:
+            self.number.position = nearest[1]
+            if self.number.text != str(number):
+                self.number.text = str(number)
 
 
 def add_mesh(scene, name, mesh, colour=UNKNOWN, **options):

