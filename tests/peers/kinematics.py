@@ -30,19 +30,27 @@ def chain(model, base, tip):
     return [joint for joint in model.supports[parent(tip)] if joint not in of_base]
 
 
+def configuration(model, joints, positions):
+    """Pinocchio's configuration vector; all other joints are at 0."""
+    q = pin.neutral(model)
+    for joint, position in zip(joints, positions):
+        at, size = model.joints[joint].idx_q, model.joints[joint].nq
+        # Pinocchio represents a continuous joint by cosine and sine.
+        q[at:at + size] = [position] if size == 1 else [np.cos(position), np.sin(position)]
+    return q
+
+
+def pose(model, data, base, tip, q):
+    """Of the tip in the frame of the base."""
+    pin.framesForwardKinematics(model, data, q)
+    return data.oMf[model.getFrameId(base)].inverse() * data.oMf[model.getFrameId(tip)]
+
+
 def poses_of_pinocchio(model, base, tip, postures, joints):
     """One row for each posture: x y z, then the rotation by rows."""
-    data, rows = model.createData(), []
-    for posture in postures:
-        q = pin.neutral(model)
-        for joint, angle in zip(joints, posture):
-            at, size = model.joints[joint].idx_q, model.joints[joint].nq
-            # Pinocchio represents a continuous joint by cosine and sine.
-            q[at:at + size] = [angle] if size == 1 else [np.cos(angle), np.sin(angle)]
-        pin.framesForwardKinematics(model, data, q)
-        pose = data.oMf[model.getFrameId(base)].inverse() * data.oMf[model.getFrameId(tip)]
-        rows.append([*pose.translation, *pose.rotation.ravel()])
-    return np.array(rows)
+    data = model.createData()
+    poses = [pose(model, data, base, tip, configuration(model, joints, posture)) for posture in postures]
+    return np.array([[*one.translation, *one.rotation.ravel()] for one in poses])
 
 
 def poses_of_arm_check(urdf, base, tip, postures):

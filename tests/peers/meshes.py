@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from kinematics import ROBOTS, chain
+from kinematics import ROBOTS, chain, configuration, pose
 
 OVERLAP_SHARE = 0.5  # of SAMPLES; links that touch in more do so by design
 SAMPLES = 300
@@ -36,22 +36,23 @@ class MeshArm:
     """
 
     def __init__(self, robot):
+        self.robot = robot
         self.model = pin.buildModelFromUrdf(str(robot.urdf))
         self.data = self.model.createData()
         self.joints = chain(self.model, robot.base, robot.tip)
-        self.base, self.tip = (self.model.getFrameId(name) for name in (robot.base, robot.tip))
         self.geometry = pin.buildGeomFromUrdf(self.model, str(robot.urdf), pin.GeometryType.COLLISION,
                                               package_dirs=[str(ROBOTS.parents[1])])
         limits = [self.limits(self.model.joints[joint]) for joint in self.joints]
         self.lower, self.upper = np.array(limits).T
-        self.judge(self.pairs())
+        pairs = self.pairs()
+        self.judge(pairs)
         touching = {}
         random = np.random.default_rng(1)
         for _ in range(SAMPLES):
             for links in {self.links(i) for i in self.touching(random.uniform(self.lower, self.upper))}:
                 touching[links] = touching.get(links, 0) + 1
         self.overlaps = {links for links, count in touching.items() if count > OVERLAP_SHARE * SAMPLES}
-        self.judge([pair for i, pair in enumerate(self.pairs()) if self.links(i) not in self.overlaps])
+        self.judge([pair for i, pair in enumerate(pairs) if self.links(i) not in self.overlaps])
 
     def limits(self, joint):
         """Those of the URDF; of a joint that turns farther, one turn."""
@@ -77,11 +78,7 @@ class MeshArm:
         return tuple(sorted(self.model.frames[shapes[shape].parentFrame].name for shape in (pair.first, pair.second)))
 
     def configuration(self, positions):
-        q = pin.neutral(self.model)
-        for joint, position in zip(self.joints, positions):
-            at, size = self.model.joints[joint].idx_q, self.model.joints[joint].nq
-            q[at:at + size] = [position] if size == 1 else [np.cos(position), np.sin(position)]
-        return q
+        return configuration(self.model, self.joints, positions)
 
     def touching(self, positions):
         """The indices of all pairs that touch."""
@@ -98,5 +95,5 @@ class MeshArm:
 
     def tool_m(self, positions):
         """In the frame of the base, m."""
-        pin.framesForwardKinematics(self.model, self.data, self.configuration(positions))
-        return (self.data.oMf[self.base].inverse() * self.data.oMf[self.tip]).translation.copy()
+        return pose(self.model, self.data, self.robot.base, self.robot.tip,
+                    self.configuration(positions)).translation.copy()

@@ -32,8 +32,9 @@ constexpr double kLeastClearance_m = 0.001;
 // clearance (the campaign's boxes, ten joints).
 constexpr double kLeastClearanceOfLongChain_m = 0.004;
 constexpr int kLongChain = 9;  // joints
-// Of the samples without contact: what the least clearance may forbid by one pair that adjoins or of an arm with
-// meshes, whose pieces are larger than they. Such links, as those of a humanoid's torso, may be nearer by construction.
+// Links that adjoin, as those of a humanoid's torso, may be nearer than the least clearance by construction. So may
+// pieces, which are larger than their meshes. The least clearance of such a pair forbids at most this share of the
+// samples without contact.
 constexpr double kShareOfLeast = 0.005;
 constexpr double kLeastOfAll_m = 0.0002;
 
