@@ -153,8 +153,8 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 
-  const Target target = inputs.target.message ? present_target(model, poses, inputs.target, now_s) : Target{};
-  const TaskJacobian jacobian = tool_jacobian(poses, target.tracks_orientation ? 6 : 3);
+  const TaskJacobian jacobian = tool_jacobian(poses, target_rows(inputs.target));
+  const Target target = inputs.target.message ? present_target(model, jacobian, inputs.target, now_s) : Target{};
   const double period_s = model.settings.period_s();
   const VelocityRange sustainable = sustainable_range(model.arm.limits, arm.position_rad, arm.position_rad, period_s);
   const LawInput input{model.arm, poses,     jacobian,  arm.position_rad, arm.velocity_radps,

@@ -45,22 +45,23 @@ Target extrapolated(const Target& target, double dt_s) {
   return later;
 }
 
-Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target) {
-  const TaskJacobian jacobian = tool_jacobian(poses, 6);
+Target bounded_speed(const Arm& arm, const TaskJacobian& tool_jacobian, const Target& target) {
   const auto followable_share = [&](const PointJacobian& rows, const Vector3& velocity) {
     const double along = (rows.transpose() * velocity).cwiseAbs().dot(arm.limits.velocity_radps);
     return along < velocity.squaredNorm() ? along / velocity.squaredNorm() : 1.0;
   };
   Target bounded = target;
-  bounded.velocity_mps *= followable_share(jacobian.topRows<3>(), target.velocity_mps);
-  bounded.angular_velocity_radps *= followable_share(jacobian.bottomRows<3>(), target.angular_velocity_radps);
+  bounded.velocity_mps *= followable_share(tool_jacobian.topRows<3>(), target.velocity_mps);
+  if (tool_jacobian.rows() == 6)
+    bounded.angular_velocity_radps *= followable_share(tool_jacobian.bottomRows<3>(), target.angular_velocity_radps);
   return bounded;
 }
 
-Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s) {
+Target present_target(const Model& model, const TaskJacobian& tool_jacobian, const Latest<Target>& latest,
+                      double now_s) {
   const Target& target = *latest.message;
   if (target.is_posture()) return within_limits(model.arm, target);
-  return extrapolated(model.settings.bounds_target_speed ? bounded_speed(model.arm, poses, target) : target,
+  return extrapolated(model.settings.bounds_target_speed ? bounded_speed(model.arm, tool_jacobian, target) : target,
                       latest.age_s(now_s));
 }
 

@@ -21,15 +21,22 @@ OtherFrames present_others(const Model& model, const Inputs& inputs, double now_
 /// The target dt_s later, at its own linear and angular velocity.
 Target extrapolated(const Target& target, double dt_s);
 
+/// Rows of the task: 6 for a target that tracks an orientation, else 3.
+inline int target_rows(const Latest<Target>& target) {
+  return target.message && target.message->tracks_orientation ? 6 : 3;
+}
+
 /// The target with each of its velocities v (linear, angular) scaled down to what the joint velocity limits h permit in
 /// this configuration: |v| <= sum_i |n . J_i| h_i, n = v / |v|, J_i the tool Jacobian's column of joint i. No joint
 /// velocity within the limits moves the tool faster along n, so a target that the arm can follow is not changed. A
-/// larger velocity would only make the shield prefer the target to the clearances.
-Target bounded_speed(const Arm& arm, const LinkPoses& poses, const Target& target);
+/// larger velocity would only make the shield prefer the target to the clearances. With a Jacobian of 3 rows the
+/// angular velocity remains as it is.
+Target bounded_speed(const Arm& arm, const TaskJacobian& tool_jacobian, const Target& target);
 
 /// The newest target, extrapolated from its receipt to now_s; its velocities are bounded as above where
 /// Settings::bounds_target_speed is set. A posture is clamped to the position limits, and position_m is the tool's
-/// place in it. There must be a target.
-Target present_target(const Model& model, const LinkPoses& poses, const Latest<Target>& latest, double now_s);
+/// place in it. There must be a target. tool_jacobian: target_rows() x n, in the present configuration.
+Target present_target(const Model& model, const TaskJacobian& tool_jacobian, const Latest<Target>& latest,
+                      double now_s);
 
 }  // namespace sidestep

@@ -31,8 +31,9 @@ template <int rows>
 void follow(const SidestepGains& gains, const LawInput& input, const TaskVector& x, const JointVector& preferred_radps,
             NominalCommand& nominal) {
   const JointVector& joint_scale = input.arm.joint_scale;
-  const TaskJacobian& jacobian = input.tool_jacobian;
-  TaskJacobian scaled = weighted_task(jacobian);
+  using Jacobian = typename DampedInverse<rows>::Jacobian;
+  const Jacobian jacobian = input.tool_jacobian;
+  Jacobian scaled = weighted_task(jacobian);
   for (Eigen::Index i = 0; i < scaled.cols(); ++i) scaled.col(i) *= joint_scale[i];
   constexpr double kDamping = rows == 6 ? kFullPoseDamping : 1.0;
   const DampedInverse<rows> inverse(kDamping * gains.lambda_0, kDamping * gains.sigma_0, scaled);

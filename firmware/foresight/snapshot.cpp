@@ -90,7 +90,8 @@ void take_snapshot(const Model& model, const Inputs& inputs, const State& state,
     snapshot.attachments = {};
   const OtherFrames others = place_others(model.arm, snapshot.others, snapshot.attachments);
   const LinkPoses poses = forward_kinematics(model.arm, snapshot.arm.position_rad, others);
-  if (snapshot.tracking) snapshot.target = present_target(model, poses, inputs.target, now_s);
+  if (snapshot.tracking)
+    snapshot.target = present_target(model, tool_jacobian(poses, target_rows(inputs.target)), inputs.target, now_s);
 
   const ObstacleView view = view_obstacles(model, inputs.obstacles, now_s);
   if (view.count() <= kMaxNearbyObstacles) {

@@ -10,6 +10,12 @@ EIGEN_ALWAYS_INLINE Vector3 rotated(const Matrix3& rotation, const Vector3& v) {
   return rotation.col(0) * v[0] + rotation.col(1) * v[1] + rotation.col(2) * v[2];
 }
 
+/// The velocity of a point, fixed to body i or a later one, by joint i at unit velocity.
+EIGEN_ALWAYS_INLINE Vector3 point_column(const LinkPoses& poses, int i, const Vector3& p_base) {
+  const Vector3 axis = poses.rotation[i].col(2);
+  return poses.prismatic[i - 1] ? axis : axis.cross(p_base - poses.origin[i]);
+}
+
 }  // namespace
 
 LinkPoses forward_kinematics(const Arm& arm, const JointVector& q_rad, const OtherFrames& others) {
@@ -70,11 +76,14 @@ ConvexSolid solid_of(const LinkPoses& poses, const BodyShape& shape) {
 
 PointJacobian point_jacobian(const LinkPoses& poses, int body, const Vector3& p_base) {
   PointJacobian jacobian = PointJacobian::Zero(3, poses.joints);
-  for (int i = 1; i <= body; ++i) {
-    const Vector3 axis = poses.rotation[i].col(2);
-    jacobian.col(i - 1) = poses.prismatic[i - 1] ? axis : axis.cross(p_base - poses.origin[i]);
-  }
+  for (int i = 1; i <= body; ++i) jacobian.col(i - 1) = point_column(poses, i, p_base);
   return jacobian;
+}
+
+Vector3 point_velocity(const LinkPoses& poses, int body, const Vector3& p_base, const JointVector& velocity_radps) {
+  Vector3 sum_mps = Vector3::Zero();
+  for (int i = 1; i <= body; ++i) sum_mps += point_column(poses, i, p_base) * velocity_radps[i - 1];
+  return sum_mps;
 }
 
 TaskJacobian tool_jacobian(const LinkPoses& poses, int rows) {

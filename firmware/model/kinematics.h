@@ -70,6 +70,9 @@ ConvexSolid solid_of(const LinkPoses& poses, const BodyShape& shape);
 /// joints beyond the body are 0.
 PointJacobian point_jacobian(const LinkPoses& poses, int body, const Vector3& p_base);
 
+/// The velocity of a body's point p_base (m) by these joint velocities, m/s: the Jacobian times them.
+Vector3 point_velocity(const LinkPoses& poses, int body, const Vector3& p_base, const JointVector& velocity_radps);
+
 /// The Jacobian of the tool, rows x n, with rows = 3 (linear) or 6 (linear, then angular).
 TaskJacobian tool_jacobian(const LinkPoses& poses, int rows);
 

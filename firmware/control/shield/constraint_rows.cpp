@@ -1,6 +1,8 @@
 #include "firmware/control/shield/constraint_rows.h"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 
 #include "firmware/control/shield/required_clearance.h"
 #include "firmware/model/joint_axes.h"
@@ -119,7 +121,6 @@ class RowMaker {
         sustainable_(sustainable),
         range_(range),
         within_(is_within(range, sustainable)),
-        link_mps_(link_speeds()),
         rows_(rows),
         plan_(rows.plan),
         step_(rows.step) {}
@@ -129,8 +130,7 @@ class RowMaker {
     const PosedShape first{a, input_.poses, input_.clearance.links[self.first]};
     const PosedShape second{b, input_.poses, input_.clearance.links[self.second]};
     const Proximity pair = measure_pair(first, second);
-    const JointVector row =
-        axes_.row(a.body, pair.on_arm, pair.normal) - axes_.row(b.body, pair.on_obstacle, pair.normal);
+    const JointVector row = row_of_links(a, b, pair);
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
     const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
                                       pair.normal.dot(closing_mps));
@@ -219,11 +219,17 @@ class RowMaker {
     const Vector3 turn_rad = braking_s_ * (angular_velocity(a) - angular_velocity(b));
     if (turn_rad.norm() < kLeastTurn_rad) return;
     for (const Proximity& next : proximities_after_turn(first, second, pair, turn_rad)) {
-      const JointVector row = axes_.row(a, next.on_arm, next.normal) - axes_.row(b, next.on_obstacle, next.normal);
+      const JointVector row = row_of_links(first.shape, second.shape, next);
       add_hard(row, least_mps(row, sustainable_), self_room_m(next.distance_m, self.clearance_m), 0.0);
     }
   }
 
+  /// Of the distance between two links.
+  JointVector row_of_links(const BodyShape& a, const BodyShape& b, const Proximity& pair) const {
+    JointVector row = axes_.row(a.body, pair.on_arm, pair.normal);
+    row -= axes_.row(b.body, pair.on_obstacle, pair.normal);
+    return row;
+  }
   const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
 
   /// The time that the arm takes to stop, s.
@@ -243,22 +249,25 @@ class RowMaker {
     if (shape.other_joint < 0) return Vector3::Zero();
     return other_velocity_at(input_.arm, input_.poses, shape.other_joint, point);
   }
-  double required_m(const NearPair& pair) const {
-    return hard_clearance_m(settings_, input_.obstacles, pair.now.obstacle, link_mps_[pair.now.shape]);
+  /// Where the full clearance is needed in any case, the speed of the link need not be known.
+  double required_m(const NearPair& pair) {
+    const double obstacle_doubt = doubt(input_.obstacles, pair.now.obstacle);
+    return hard_clearance_m(settings_, obstacle_doubt, obstacle_doubt < 1.0 ? link_speed_mps(pair.now.shape) : 0.0);
   }
-  /// Of the fastest point of each link shape's axis, by the last commanded velocity, m/s; empty where nothing is near.
-  BoundedList<double, kMaxShapes> link_speeds() const {
-    BoundedList<double, kMaxShapes> speeds_mps;
-    if (input_.clearance.near.size() == 0) return speeds_mps;
-    for (int s = 0; s < input_.clearance.links.size(); ++s) {
+  /// Of the fastest point of a link shape's axis, by the last commanded velocity, m/s.
+  double link_speed_mps(int s) {
+    const auto index = static_cast<size_t>(s);
+    if (!knows_speed_[index]) {
       const Capsule& link = input_.clearance.links[s];
       const int body = shape(s).body;
-      const auto speed_mps = [&](const Vector3& point) {
-        return (point_jacobian(input_.poses, body, point) * input_.last_velocity_radps).norm();
-      };
-      speeds_mps.add(std::max(speed_mps(link.start), speed_mps(link.end)));
+      speed_mps_[index] = std::max(velocity_of(body, link.start).norm(), velocity_of(body, link.end).norm());
+      knows_speed_[index] = true;
     }
-    return speeds_mps;
+    return speed_mps_[index];
+  }
+  /// Of a body's point, by the last commanded velocity, m/s.
+  Vector3 velocity_of(int body, const Vector3& p_base) const {
+    return point_velocity(input_.poses, body, p_base, input_.last_velocity_radps);
   }
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
@@ -283,8 +292,8 @@ class RowMaker {
   Vector3 chosen_side(const NearPair& pair) const {
     const double decisive_mps = 0.02;
     const ClosestApproach& approach = pair.approach;
-    const Vector3 drift = point_jacobian(input_.poses, body_of(pair), approach.on_arm) * input_.last_velocity_radps +
-                          decisive_mps * pair.velocity_mps.unitOrthogonal();
+    const Vector3 drift =
+        velocity_of(body_of(pair), approach.on_arm) + decisive_mps * pair.velocity_mps.unitOrthogonal();
     return drift.dot(approach.normal) < 0.0 ? Vector3(-approach.normal) : approach.normal;
   }
 
@@ -295,7 +304,8 @@ class RowMaker {
   const VelocityRange& sustainable_;
   const VelocityRange& range_;
   const bool within_;  ///< range_ lies in sustainable_: then the least value of a row is no smaller there
-  const BoundedList<double, kMaxShapes> link_mps_;
+  std::array<double, kMaxShapes> speed_mps_;  ///< link_speed_mps() where knows_speed_
+  std::bitset<kMaxShapes> knows_speed_;
   RowSets& rows_;
   RowFiller plan_, step_;
   double least_room_m_ = std::numeric_limits<double>::infinity();

@@ -51,7 +51,7 @@ Threats find_threats(const ShieldSettings& settings, const Clearance& clearance,
   }
   for (const int index : most_urgent_obstacles(clearance)) {
     threats.obstacles.add(view.extrapolated(index));
-    threats.allowance_m.add(settings.hard_clearance_m - hard_clearance_m(settings, view, index, 0.0));
+    threats.allowance_m.add(settings.hard_clearance_m - hard_clearance_m(settings, doubt(view, index), 0.0));
   }
   return threats;
 }

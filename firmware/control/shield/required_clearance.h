@@ -22,8 +22,13 @@ inline double fastest_point_mps(const Obstacle& obstacle) {
 /// 0: the obstacle rests and is exactly known; 1: it needs the full clearance.
 double doubt(const Obstacle& obstacle);
 
-/// The hard clearance of a link to an obstacle of a view, m.
-double hard_clearance_m(const ShieldSettings& settings, const ObstacleView& view, int obstacle, double link_mps);
+/// The same of an obstacle of a view.
+inline double doubt(const ObstacleView& view, int obstacle) {
+  return view.growth_of(obstacle) > 0.0 ? 1.0 : doubt(view.at(obstacle));
+}
+
+/// The hard clearance of a link to an obstacle with this doubt(), m.
+double hard_clearance_m(const ShieldSettings& settings, double doubt, double link_mps);
 
 /// Whether obstacles at rest do not grow with these settings.
 inline bool is_exact(const ObstacleTrust& trust) {

@@ -25,9 +25,11 @@ struct LawInput {
 constexpr double kTurnWeight_m = 0.1;
 
 /// The task Jacobian with the rows of the rotation times this weight. Of a position target it is the same.
-inline TaskJacobian weighted_task(TaskJacobian jacobian, double turn_weight_m = kTurnWeight_m) {
-  if (jacobian.rows() == 6) jacobian.bottomRows<3>() *= turn_weight_m;
-  return jacobian;
+template <typename Jacobian>
+Jacobian weighted_task(const Jacobian& jacobian, double turn_weight_m = kTurnWeight_m) {
+  Jacobian weighted = jacobian;
+  if (jacobian.rows() == 6) weighted.template bottomRows<3>() *= turn_weight_m;
+  return weighted;
 }
 
 /// The output of a law: the joint velocity u before the shield.

@@ -22,7 +22,7 @@ void a_target_that_the_arm_can_follow_keeps_its_velocity(void**) {
     Target target;
     target.velocity_mps = twist.head<3>();
     target.angular_velocity_radps = twist.tail<3>();
-    const Target bounded = bounded_speed(arm, poses, target);
+    const Target bounded = bounded_speed(arm, tool_jacobian(poses, 6), target);
     check_near(bounded.velocity_mps, target.velocity_mps, 0);
     check_near(bounded.angular_velocity_radps, target.angular_velocity_radps, 0);
   }
@@ -38,7 +38,7 @@ void a_faster_target_counts_with_the_largest_speed_of_the_tool_along_its_directi
     Target target;
     target.velocity_mps = 1000.0 * random.direction();
     target.angular_velocity_radps = 1000.0 * random.direction();
-    const Target bounded = bounded_speed(arm, poses, target);
+    const Target bounded = bounded_speed(arm, tool_jacobian(poses, 6), target);
     const auto largest = [&](const PointJacobian& rows, const Vector3& direction) {
       JointVector best_radps = arm.limits.velocity_radps;
       for (int i = 0; i < 7; ++i) best_radps[i] *= direction.dot(rows.col(i)) < 0.0 ? -1.0 : 1.0;
@@ -51,7 +51,8 @@ void a_faster_target_counts_with_the_largest_speed_of_the_tool_along_its_directi
 }
 
 void a_target_at_rest_stays_at_rest(void**) {
-  const Target bounded = bounded_speed(lwa3(), forward_kinematics(lwa3(), test::home_rad()), Target{});
+  const LinkPoses poses = forward_kinematics(lwa3(), test::home_rad());
+  const Target bounded = bounded_speed(lwa3(), tool_jacobian(poses, 6), Target{});
   check_near(bounded.velocity_mps, Vector3::Zero().eval(), 0);
   check_near(bounded.angular_velocity_radps, Vector3::Zero().eval(), 0);
 }

@@ -47,9 +47,9 @@ void an_obstacle_that_has_grown_keeps_the_full_clearance_and_surroundings_do_not
   const std::vector<Obstacle> surroundings{bar()};
   const ShieldSettings settings;
   const ObstacleView exact{set.get(), 0.0, 0.0, &surroundings}, grown{set.get(), 0.0, 0.001, &surroundings};
-  check_near(hard_clearance_m(settings, exact, 0, 0.0), settings.rest_clearance_m, 1e-12);
-  check_near(hard_clearance_m(settings, grown, 0, 0.0), settings.hard_clearance_m, 0.0);
-  check_near(hard_clearance_m(settings, grown, 1, 0.0), settings.rest_clearance_m, 1e-12);
+  check_near(hard_clearance_m(settings, doubt(exact, 0), 0.0), settings.rest_clearance_m, 1e-12);
+  check_near(hard_clearance_m(settings, doubt(grown, 0), 0.0), settings.hard_clearance_m, 0.0);
+  check_near(hard_clearance_m(settings, doubt(grown, 1), 0.0), settings.rest_clearance_m, 1e-12);
 }
 
 void the_faster_the_link_the_more_clearance(void**) {
@@ -59,9 +59,9 @@ void the_faster_the_link_the_more_clearance(void**) {
   const ShieldSettings settings;
   const ObstacleView view{set.get()};
   for (const auto& [link_mps, clearance_m] : {std::pair{0.0, 0.004}, {0.25, 0.012}, {0.5, 0.02}, {2.0, 0.02}})
-    check_near(hard_clearance_m(settings, view, 0, link_mps), clearance_m, 1e-12);
+    check_near(hard_clearance_m(settings, doubt(view, 0), link_mps), clearance_m, 1e-12);
   set->obstacles[0].velocity_mps.x() = 0.04;  // more doubtful than the link is fast
-  check_near(hard_clearance_m(settings, view, 0, 0.25), 0.0168, 1e-12);
+  check_near(hard_clearance_m(settings, doubt(view, 0), 0.25), 0.0168, 1e-12);
 }
 
 void only_exact_sensing_is_exact(void**) {
