@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 
 #include "tests/support/check.h"
 #include "tests/support/process.h"
