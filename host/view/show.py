@@ -20,7 +20,6 @@ from view import add_port
 
 PAUSE_S = 1.0  # between two runs
 NICE = 5       # of the view: at 10, a browser that draws in software leaves it too little of two CPUs for its rate
-LOW_RESOLUTION = "?fixedDpr=0.5"  # the library's parameter; a browser without a GPU needs it for the view's rate
 COMMANDS = """In a second terminal:
   cd {root}
   build/venv/bin/python host/tools/send_target.py -0.5 -0.3 0.5              # Ctrl-C ends it, and any other sender
@@ -76,7 +75,7 @@ def main():
     network.check_free()
     address = f"http://localhost:{arguments.port}"
     print(f"{scenario['title']}: open {address} (Ctrl-C ends)\n"
-          f"In a browser without a GPU {address}/{LOW_RESOLUTION} draws faster, at half the resolution.", flush=True)
+          f"A browser without a GPU draws it at a lower resolution; in full: {address}/?fixedDpr=1", flush=True)
     if lacks_target(scenario):
         print(COMMANDS.format(root=ROOT), flush=True)
     with viewer(scenario, arguments.port) as view:

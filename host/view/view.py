@@ -31,12 +31,14 @@ class View:
         import viser  # takes a second, and tests of the arguments do without it
 
         import panel
+        import resolution
         import stage
         self.arms = arms
         channels = {name: kind for one in arms for name, kind in one.channels().items()}
         self.latest = wire.LatestMessages(channels, lcm_url)
         # Whoever reaches the page can steer where that is offered: this machine only.
         self.server = viser.ViserServer(host="127.0.0.1", port=port, label="Sidestep", verbose=False)
+        resolution.adapt(self.server)
         self.stage = stage.Stage(self.server, arms, TRAIL_POINTS)
         self.panel = panel.Panel(self.server, arms, stage.first_layers(arms))
         self.steering = panel.Steering(self.server) if steers else None

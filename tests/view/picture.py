@@ -107,7 +107,7 @@ def main():
     with show.viewer(scenario, PORT, url):
         page = browser()
         try:
-            open_page(page)
+            open_page(page, "?fixedDpr=1")
             time.sleep(SETTLE_S)
             close_notes(page)
             empty = pixels(Image.open(io.BytesIO(page.get_screenshot_as_png())))
