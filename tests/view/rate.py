@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Count how often the view sends and a browser without a GPU draws, with 20 moving obstacles, on one machine.
 
-The browser is headless Chromium, to which the view must have given its lower resolution. What it draws depends on what
-else the machine does, so otherwise only less than LEAST_SENT_HZ, or more than one skipped cycle in a thousand, is a
-failure.
+The browser is headless Chromium, to which the view must have given its lower resolution. Fails below LEAST_SENT_HZ or
+LEAST_DRAWN_HZ, or when the controller skips more than one cycle in a thousand. What is drawn depends on what else the
+machine does, so the best of up to TRIES measurements counts.
 """
 import argparse
 import io
@@ -21,7 +21,8 @@ import view
 import wire
 from arm_view import ArmView
 
-LEAST_SENT_HZ, MOST_SKIPPED = 29.5, 1e-3
+LEAST_SENT_HZ, LEAST_DRAWN_HZ, MOST_SKIPPED = 29.5, 30, 1e-3
+TRIES = 3
 SETTLE_S = 4.0
 COUNT_FRAMES = """const [duration_s, done] = arguments, end = performance.now() + 1000 * duration_s;
 let frames = 0;
@@ -66,18 +67,21 @@ def main():
             page.set_script_timeout(arguments.duration + 30)
             latest = wire.LatestMessages({"CONTROLLER_STATUS": "CONTROLLER_STATUS"}, url)
             skipped, before, start_s = skipped_cycles(latest), sent.value, time.monotonic()
-            drawn_hz = page.execute_async_script(COUNT_FRAMES, arguments.duration) / arguments.duration
+            drawn_hz = []
+            while len(drawn_hz) < TRIES and max(drawn_hz, default=0) < LEAST_DRAWN_HZ:
+                drawn_hz.append(page.execute_async_script(COUNT_FRAMES, arguments.duration) / arguments.duration)
             pixels = page.execute_script(PIXELS)
             sent_hz = (sent.value - before) / (time.monotonic() - start_s)
             skipped = skipped_cycles(latest) - skipped
     finally:
         page.quit()
         process.kill()
-    cycles = arguments.duration * scenario["rate_hz"]
-    print(f"view: {sent_hz:.1f} updates/s sent (at least {LEAST_SENT_HZ}), {drawn_hz:.1f} frames/s drawn of "
-          f"{pixels} pixels, {skipped} of {cycles:.0f} cycles skipped; load {os.getloadavg()[0]:.1f}")
+    cycles = len(drawn_hz) * arguments.duration * scenario["rate_hz"]
+    print(f"view: {sent_hz:.1f} updates/s sent (at least {LEAST_SENT_HZ}), {max(drawn_hz):.1f} frames/s drawn (at "
+          f"least {LEAST_DRAWN_HZ}) of {pixels} pixels, {skipped} of {cycles:.0f} cycles skipped; load {os.getloadavg()[0]:.1f}")
     adapts = 0 < pixels <= resolution.SOFTWARE_PIXELS
-    return 0 if adapts and sent_hz >= LEAST_SENT_HZ and skipped <= MOST_SKIPPED * cycles else 1
+    holds = sent_hz >= LEAST_SENT_HZ and max(drawn_hz) >= LEAST_DRAWN_HZ
+    return 0 if adapts and holds and skipped <= MOST_SKIPPED * cycles else 1
 
 
 if __name__ == "__main__":
