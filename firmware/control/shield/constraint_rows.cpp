@@ -30,6 +30,10 @@ constexpr double kLeastSpeed_mps = 0.02;
 /// A row that is violated by less is met.
 constexpr double kViolated_mps = 1e-4;
 
+/// The hard rows of two links are multiplied by it, so that they are granted 1/64 of the slack (constraint_rows.h). A
+/// power of two: nothing is rounded.
+constexpr double kLinksWeight = 64.0;
+
 /// The least value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {
   double sum_mps = 0.0;
@@ -133,7 +137,7 @@ class RowMaker {
     const JointVector row = row_of_links(a, b, pair);
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
     const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
-                                      pair.normal.dot(closing_mps));
+                                      pair.normal.dot(closing_mps), kLinksWeight);
     add_turning(self, pair, first, second);
     rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
     const double room_m = pair.distance_m - self.clearance_m;
@@ -220,7 +224,7 @@ class RowMaker {
     if (turn_rad.norm() < kLeastTurn_rad) return;
     for (const Proximity& next : proximities_after_turn(first, second, pair, turn_rad)) {
       const JointVector row = row_of_links(first.shape, second.shape, next);
-      add_hard(row, least_mps(row, sustainable_), self_room_m(next.distance_m, self.clearance_m), 0.0);
+      add_hard(row, least_mps(row, sustainable_), self_room_m(next.distance_m, self.clearance_m), 0.0, kLinksWeight);
     }
   }
 
@@ -272,14 +276,14 @@ class RowMaker {
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
-  /// Returns the bound.
-  double add_hard(const JointVector& row, double least, double room_m, double closing_mps) {
+  /// weight: of the row among those that share the slack. Returns the bound.
+  double add_hard(const JointVector& row, double least, double room_m, double closing_mps, double weight = 1.0) {
     const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
     const bool counts = bound_mps > least;
-    if (counts) plan_.add(row, bound_mps, Tier::kHard, bound_mps - least);
+    if (counts) plan_.add(weight * row, weight * bound_mps, Tier::kHard, bound_mps - least);
     if (within_ && !counts) return bound_mps;
     const double violation_mps = bound_mps - least_mps(row, range_);
-    if (violation_mps > 0.0) step_.add(row, bound_mps, Tier::kHard, violation_mps);
+    if (violation_mps > 0.0) step_.add(weight * row, weight * bound_mps, Tier::kHard, violation_mps);
     return bound_mps;
   }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {

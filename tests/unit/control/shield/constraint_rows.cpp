@@ -346,7 +346,8 @@ void turning_links_have_hard_rows_for_the_next_points(void**) {
   check(seen > 300, "only %d", seen);
 }
 
-void rows_of_self_pairs_are_the_gradients_of_their_distances(void**) {
+void rows_of_self_pairs_are_64_times_the_gradients_of_their_distances(void**) {
+  const double weight = 64.0;
   const std::vector<SelfPair> pairs = find_self_pairs(lwa3(), 0.02).kept;
   Random random(5);
   int seen = 0;
@@ -364,11 +365,12 @@ void rows_of_self_pairs_are_the_gradients_of_their_distances(void**) {
           gradient(scene.q_rad, [&](const LinkPoses& poses) { return distance(poses).distance_m; });
       if (!joints_matter(expected)) continue;
       assert_int_equal(rows.size(), 1);
-      check_near_because(rows[0].row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
+      const JointVector row = rows[0].row / weight;
+      check_near_because(row, expected, kTolerance, "trial %d, links %d and %d", trial, a, b);
       const double room_m = now.distance_m >= clearance_m         ? now.distance_m - clearance_m
                             : now.distance_m >= clearance_m / 2.0 ? 0.0
                                                                   : now.distance_m - clearance_m / 2.0;
-      check_near(rows[0].bound, hard_bound(rows[0].row, room_m), 1e-9);
+      check_near(rows[0].bound, weight * hard_bound(row, room_m), 1e-9);
       ++seen;
     }
   }
@@ -491,7 +493,7 @@ int main() {
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),
       cmocka_unit_test(turning_links_have_hard_rows_for_the_next_points),
-      cmocka_unit_test(rows_of_self_pairs_are_the_gradients_of_their_distances),
+      cmocka_unit_test(rows_of_self_pairs_are_64_times_the_gradients_of_their_distances),
       cmocka_unit_test(the_links_with_the_least_room_are_reported_and_limit_what_brings_them_together),
       cmocka_unit_test(only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped),
   };
