@@ -13,6 +13,11 @@ constexpr int kSearchesUntilWaiting = 50;
 constexpr int kSearchesAfterBad = 20;
 constexpr int kTrustedInARow = 4;
 
+// So often a search looks for a self-motion alone, while the tool is in place and no collision is near.
+constexpr int kSelfMotionSearches = 20;
+constexpr double kInPlace_m = 0.1;
+constexpr double kNearCollision_s = 3.0;
+
 // Where everything rests, forecasts are exact enough for a smaller difference. Later than this an arm is well under
 // way, and the exchange of guides costs what the new one gains.
 constexpr double kClearlyEarlier_s = 0.15;
@@ -28,6 +33,13 @@ bool everything_rests(const Snapshot& now) {
 bool is_good(const Snapshot& now, const Forecast& forecast) {
   const bool follows_pose = now.tracking && is_moving_pose(now.target);
   return !forecast.collides && (follows_pose || forecast.cost_s < kGoodCost_s);
+}
+
+/// Whether the tool is at the position of a target at rest, or nearly so.
+bool is_in_place(const Arm& arm, const Snapshot& now) {
+  if (!now.tracking || now.target.is_posture() || !is_at_rest(now.target)) return false;
+  const LinkPoses poses = forward_kinematics(arm, now.arm.position_rad);
+  return (now.target.position_m - poses.tool_position).norm() < kInPlace_m;
 }
 
 }  // namespace
@@ -50,6 +62,7 @@ void Foresight::adopt(const Guide& guide, const Forecast& forecast) {
   guide_ = guide;
   expected_ = forecast;
   unsuccessful_searches_ = 0;
+  self_motions_left_ = kSelfMotionSearches;
   direct_in_a_row_ = 0;
 }
 
@@ -69,16 +82,28 @@ void Foresight::assess(const Snapshot& now) {
   }
   if (is_good(now, expected_)) {
     unsuccessful_searches_ = 0;
+    self_motions_left_ = kSelfMotionSearches;
     candidate_ = Guide{};
     if (guide_.knots == 0) guide_.foresight_status = ForesightStatus::kDirect;
   }
   expectation_.set(now, expected_);
 }
 
+/// Whether the arm had better change its configuration with the tool in place than lead the tool away and back.
+bool Foresight::prefers_self_motion(const Snapshot& now) const {
+  return self_motions_left_ > 0 && expected_.collision_s > kNearCollision_s && is_in_place(model_.arm, now);
+}
+
 Guide Foresight::plan_to_goal(const Snapshot& now) {
   const bool blocked = tree_planner_.is_blocked(now);
   goal_.examined(blocked);
   if (blocked) return {};
+  if (prefers_self_motion(now)) {
+    --self_motions_left_;
+    const Guide guide = planner_.plan_self_motion(now);
+    goal_.searched(planner_.found_goal());
+    return guide;
+  }
   Guide guide;
   if (!candidate_stuck_) guide = planner_.plan_to_target(now);
   candidate_stuck_ = false;
@@ -90,10 +115,11 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
 /// Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
 /// snapshot to the next.
 void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
-  const bool collided = expected_.collides;
+  const Forecast before = expected_;
   expected_ = rollout_.run(now, guide_);
-  if (collided && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
+  if (before.collides && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
     expected_.collides = true;
+    expected_.collision_s = before.collision_s;
     expected_.cost_s += kCollisionCost_s;
   }
   const Forecast forecast = rollout_.run(now, candidate_);
@@ -114,7 +140,7 @@ void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) return evaluate_candidate(now, kWorthAChange_s);
   candidate_ = now.tracking ? plan_to_goal(now) : Guide{};
   if (candidate_.knots > 0) return;
-  if (expected_.collides) candidate_ = planner_.plan_retreat(now);
+  if (expected_.collides && !prefers_self_motion(now)) candidate_ = planner_.plan_retreat(now);
   if (++unsuccessful_searches_ > kSearchesUntilWaiting && guide_.knots == 0 && !expected_.arrives)
     guide_.foresight_status = ForesightStatus::kWaiting;
 }
@@ -126,7 +152,7 @@ const Guide& Foresight::update(const Snapshot& now) {
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(now, expected_)) searches_left_ = kSearchesAfterBad;
   if (calls_++ % kAssessEvery_calls != 0) {
-    if (faster_left_ > 0 && is_good(now, expected_) && everything_rests(now))
+    if (faster_left_ > 0 && is_good(now, expected_) && everything_rests(now) && !is_in_place(model_.arm, now))
       --faster_left_, search_faster(now);
     else if (searches_left_ > 0)
       --searches_left_, search(now);

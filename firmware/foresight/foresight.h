@@ -39,6 +39,10 @@ class Foresight {
   /// collides only the tree planner plans, once: the paths of plan_to_target() may lead links into each other, which
   /// the shield refuses, and to a posture they are all nearly the same.
   ///
+  /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 20
+  /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone: the arm
+  /// changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
+  ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
   /// arrive. The law alone then continues.
@@ -64,6 +68,7 @@ class Foresight {
   void search(const Snapshot& now);
   void search_faster(const Snapshot& now);
   void evaluate_candidate(const Snapshot& now, double worth_s);
+  bool prefers_self_motion(const Snapshot& now) const;
   Guide plan_to_goal(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
 
@@ -82,6 +87,7 @@ class Foresight {
   Guide candidate_;               ///< a plan that has no rollout yet; no knots: none
   bool candidate_stuck_ = false;  ///< the arm would not reach the posture by the last candidate, though it hits nothing
   int direct_in_a_row_ = 0;       ///< assessments since guide_ was adopted whose rollout without it did not collide
+  int self_motions_left_ = 0;     ///< searches for a self-motion alone, for the present guide or the law alone
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 

@@ -5,6 +5,7 @@
 
 #include "firmware/foresight/inverse_kinematics.h"
 #include "firmware/foresight/rollout.h"
+#include "firmware/foresight/self_motion.h"
 #include "firmware/model/prediction.h"
 
 namespace sidestep {
@@ -12,6 +13,7 @@ namespace {
 
 // All constants are tuned on the witnessed campaign.
 constexpr int kTriesPerCall = 6;
+constexpr int kSelfMotionTriesPerCall = 12;  // most end before they are checked against obstacles
 constexpr int kRetreatTriesPerCall = 100;  // a retreat needs no inverse kinematics and mostly fails at an early sample
 constexpr double kSampleEvery_s = 0.06;
 constexpr double kLimitShare = 0.9;  // of the velocity and acceleration limits; the rest is left to the shield
@@ -123,6 +125,28 @@ Guide Planner::plan_to_target(const Snapshot& from) {
     if (random_.uniform(0.0, 1.0) < kDetourShare)
       append(guide, random_configuration(from.arm.position_rad, kDetour_rad));
     append(guide, goal_rad);
+    if (guide.end_s() > latest_end_s) continue;
+    if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
+    if (is_clear(from, guide)) best = guide;
+  }
+  return best;
+}
+
+Guide Planner::plan_self_motion(const Snapshot& from) {
+  const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
+  Target place = from.target;
+  place.tracks_orientation = false;
+  found_goal_ = false;
+  Guide best;
+  for (int attempt = 0; attempt < kSelfMotionTriesPerCall; ++attempt) {
+    SelfMotion motion(model_.arm, from.arm.position_rad);
+    JointVector q_rad;
+    const bool detours = random_.uniform(0.0, 1.0) < kDetourShare;
+    if (detours && !(find_goal(from, place, q_rad) && motion.add_leg(q_rad))) continue;
+    if (!find_goal(from, from.target, q_rad)) continue;
+    found_goal_ = true;
+    if (!motion.add_leg(q_rad)) continue;
+    const Guide guide = motion.guide(from.now_s, kLimitShare);
     if (guide.end_s() > latest_end_s) continue;
     if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
     if (is_clear(from, guide)) best = guide;

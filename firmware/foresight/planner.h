@@ -26,7 +26,11 @@ class Planner {
   /// arrives soonest, with ForesightStatus::kGuided; without knots if no try succeeds.
   Guide plan_to_target(const Snapshot& from);
 
-  /// Whether the last plan_to_target() found a goal configuration, clear or not.
+  /// For a target at rest that has the tool in place, or nearly so: the same in 12 tries, with guides along which the
+  /// tool stays there (self_motion.h), in 30 % of the tries by way of another configuration that has the tool there.
+  Guide plan_self_motion(const Snapshot& from);
+
+  /// Whether the last plan_to_target() or plan_self_motion() found a goal configuration, clear or not.
   bool found_goal() const { return found_goal_; }
 
   /// 100 tries. The goal configuration is random, each joint within 1 rad (0.25 m), in every other try within 2 rad, of

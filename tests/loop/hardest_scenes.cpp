@@ -65,6 +65,20 @@ void foresight_arrives_without_contact(void**) {
   }
 }
 
+/// The tool rests at its target when an obstacle comes that the arm, as it stands, cannot evade in time, or when it
+/// cannot turn any farther. Guides led it up to 1 m away and back.
+void an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place(void**) {
+  for (const SceneName& scene : {SceneName{"clutter", 2000297}, {"clutter", 2001222}, {"clutter", 2001709}}) {
+    const TrialMetrics metrics = run_scene(scene, true);
+    check(metrics.final_error_m < kArrived_m, "%s:%lu: %g m", scene.family, scene.seed, metrics.final_error_m);
+    check(metrics.clearance_m > 0.0, "%s:%lu: %g m", scene.family, scene.seed, metrics.clearance_m);
+  }
+  for (const SceneName& scene : {SceneName{"follow6d", 1000029}, {"follow6d", 3000219}}) {
+    const TrialMetrics metrics = run_scene(scene, true);
+    check(metrics.error_max_m < 0.03, "%s:%lu: %g m", scene.family, scene.seed, metrics.error_max_m);
+  }
+}
+
 /// A random pose moves at up to half of what the joints can do, sometimes past singular configurations. A turn used to
 /// weigh as much as a way of 1 m, and foresight led the arm away from poses that it followed a little late.
 void moving_poses_are_followed(void**) {
@@ -107,6 +121,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(there_is_no_contact_with_or_without_foresight),
       cmocka_unit_test(links_do_not_touch_where_a_sphere_leaves_little_room),
+      cmocka_unit_test(an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place),
       cmocka_unit_test(moving_poses_are_followed),
       cmocka_unit_test(foresight_arrives_without_contact),
       cmocka_unit_test(an_arm_at_rest_retreats_before_obstacles_trap_it),
