@@ -100,7 +100,7 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   if (blocked) return {};
   if (prefers_self_motion(now)) {
     --self_motions_left_;
-    const Guide guide = planner_.plan_self_motion(now);
+    Guide guide = planner_.plan_self_motion(now);
     goal_.searched(planner_.found_goal());
     return guide;
   }
