@@ -1,6 +1,7 @@
 #include "firmware/foresight/foresight.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sidestep {
 namespace {
@@ -115,11 +116,12 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
 /// Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
 /// snapshot to the next.
 void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
-  const Forecast before = expected_;
+  const double collision_s = expected_.collision_s;
   expected_ = rollout_.run(now, guide_);
-  if (before.collides && !expected_.collides) {  // the danger is not over because one of two forecasts misses it
+  if (std::isfinite(collision_s) &&
+      !expected_.collides) {  // the danger is not over because one of two forecasts misses it
     expected_.collides = true;
-    expected_.collision_s = before.collision_s;
+    expected_.collision_s = collision_s;
     expected_.cost_s += kCollisionCost_s;
   }
   const Forecast forecast = rollout_.run(now, candidate_);

@@ -110,8 +110,15 @@ bool Planner::find_goal(const Snapshot& from, const Target& target, JointVector&
   return solve_ik(model_.arm, target, goal_rad);
 }
 
-Guide Planner::plan_to_target(const Snapshot& from) {
+/// Replaces the best guide so far by one that ends before it, in time, and is clear.
+void Planner::take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const {
   const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
+  if (guide.end_s() > latest_end_s) return;
+  if (best.knots > 0 && guide.end_s() >= best.end_s()) return;
+  if (is_clear(from, guide)) best = guide;
+}
+
+Guide Planner::plan_to_target(const Snapshot& from) {
   const Target target = predicted_target(from.target, kTargetCoast_s);
   found_goal_ = false;
   Guide best;
@@ -125,15 +132,12 @@ Guide Planner::plan_to_target(const Snapshot& from) {
     if (random_.uniform(0.0, 1.0) < kDetourShare)
       append(guide, random_configuration(from.arm.position_rad, kDetour_rad));
     append(guide, goal_rad);
-    if (guide.end_s() > latest_end_s) continue;
-    if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
-    if (is_clear(from, guide)) best = guide;
+    take_if_sooner(from, guide, best);
   }
   return best;
 }
 
 Guide Planner::plan_self_motion(const Snapshot& from) {
-  const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
   Target place = from.target;
   place.tracks_orientation = false;
   found_goal_ = false;
@@ -146,10 +150,7 @@ Guide Planner::plan_self_motion(const Snapshot& from) {
     if (!find_goal(from, from.target, q_rad)) continue;
     found_goal_ = true;
     if (!motion.add_leg(q_rad)) continue;
-    const Guide guide = motion.guide(from.now_s, kLimitShare);
-    if (guide.end_s() > latest_end_s) continue;
-    if (best.knots > 0 && guide.end_s() >= best.end_s()) continue;
-    if (is_clear(from, guide)) best = guide;
+    take_if_sooner(from, motion.guide(from.now_s, kLimitShare), best);
   }
   return best;
 }

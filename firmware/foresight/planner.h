@@ -43,6 +43,7 @@ class Planner {
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;
+  void take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const;
   void append(Guide& guide, const JointVector& q_rad) const;
 
   const Model& model_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "firmware/base/bounded_list.h"
 #include "firmware/foresight/snapshot.h"
 #include "firmware/model/kinematics.h"

@@ -76,7 +76,7 @@ Guide SelfMotion::guide(double start_s, double share) const {
     guide.add(u, points_rad_[i], 6.0 * u * (1.0 - u) * whole_s * slope);
   }
   guide.add(1.0, points_rad_[parts]);
-  const double duration_s = least_duration_s(arm_.limits, share, guide);
+  const double duration_s = std::max(whole_s, least_duration_s(arm_.limits, share, guide));  // not 0 without a way
   for (int i = 0; i < guide.knots; ++i) {
     guide.time_s[i] = start_s + duration_s * guide.time_s[i];
     guide.velocity_radps[i] /= duration_s;

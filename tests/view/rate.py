@@ -78,7 +78,8 @@ def main():
         process.kill()
     cycles = len(drawn_hz) * arguments.duration * scenario["rate_hz"]
     print(f"view: {sent_hz:.1f} updates/s sent (at least {LEAST_SENT_HZ}), {max(drawn_hz):.1f} frames/s drawn (at "
-          f"least {LEAST_DRAWN_HZ}) of {pixels} pixels, {skipped} of {cycles:.0f} cycles skipped; load {os.getloadavg()[0]:.1f}")
+          f"least {LEAST_DRAWN_HZ}) of {pixels} pixels, {skipped} of {cycles:.0f} cycles skipped; "
+          f"load {os.getloadavg()[0]:.1f}")
     adapts = 0 < pixels <= resolution.SOFTWARE_PIXELS
     holds = sent_hz >= LEAST_SENT_HZ and max(drawn_hz) >= LEAST_DRAWN_HZ
     return 0 if adapts and holds and skipped <= MOST_SKIPPED * cycles else 1
