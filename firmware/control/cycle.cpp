@@ -28,12 +28,24 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, input));
 }
 
+/// How much the target's motion counts: from 0 at rest to 1 at 0.05 m/s and above.
+double moving_share(const Target& target) {
+  constexpr double kMoving_mps = 0.05;
+  const double speed_mps = target.velocity_mps.norm() + kTurnWeight_m * target.angular_velocity_radps.norm();
+  return std::min(1.0, speed_mps / kMoving_mps);
+}
+
 /// Weight of the tool's rotation in the shield's programme, m/rad: that of the law where the pose moves, 1 where it
 /// rests, so that an arm that evades keeps a held object level.
 double turn_weight_m(const Target& target) {
-  constexpr double kMoving_mps = 0.05;
-  const double speed_mps = target.velocity_mps.norm() + kTurnWeight_m * target.angular_velocity_radps.norm();
-  return 1.0 - (1.0 - kTurnWeight_m) * std::min(1.0, speed_mps / kMoving_mps);
+  return 1.0 - (1.0 - kTurnWeight_m) * moving_share(target);
+}
+
+/// Factor of the shield's tool_weight: 10 where the pose moves, which leaves little time to catch up after an evasion.
+/// Tuned on the campaign's chase6d; for poses at rest a large weight led to contacts in dodge6d.
+double tool_weight_factor(const Target& target) {
+  constexpr double kMovingPose = 10.0;
+  return target.tracks_orientation ? 1.0 + (kMovingPose - 1.0) * moving_share(target) : 1.0;
 }
 
 NominalCommand scaled(NominalCommand nominal, double scale) {
@@ -74,7 +86,8 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                                  settings.period_s(),
                                  comfort,
                                  mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
-                                 !moves(mode)};
+                                 !moves(mode),
+                                 tool_weight_factor(input.target)};
   const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
                                    weighted_task(input.tool_jacobian, turn_weight_m(input.target)), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;

@@ -30,10 +30,11 @@ bool everything_rests(const Snapshot& now) {
 }
 
 /// Whether a better guide need not be searched. How long a pose will move is unknown, so that the arm is not led away
-/// from one that moves (measured on the campaign's chase6d and follow6d; not tried for positions).
+/// from one that moves, nor for a collision at a place where the tool will only be if the target stops there (measured
+/// on the campaign's chase6d and follow6d; not tried for positions).
 bool is_good(const Snapshot& now, const Forecast& forecast) {
-  const bool follows_pose = now.tracking && is_moving_pose(now.target);
-  return !forecast.collides && (follows_pose || forecast.cost_s < kGoodCost_s);
+  if (now.tracking && is_moving_pose(now.target)) return forecast.collision_s > kTargetCoast_s;
+  return !forecast.collides && forecast.cost_s < kGoodCost_s;
 }
 
 /// Whether the tool is at the position of a target at rest, or nearly so.

@@ -23,7 +23,7 @@ class Foresight {
 
   /// One call per snapshot; returns the guide for the following cycles. Bounded work: at most two rollouts, or two
   /// plans. A forecast is good if the arm arrives, does not collide and is away from the target for less than 4 s;
-  /// while the target is a moving pose, if the arm does not collide.
+  /// while the target is a moving pose, if the arm does not collide before the target is assumed to stop.
   ///
   /// Every fifth call is an assessment, unless the last forecast is good and the snapshot is as expected then
   /// (expectation.h). It runs a rollout with the present guide and one without a guide. The guide is dropped if the

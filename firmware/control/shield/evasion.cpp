@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/control/shield/required_clearance.h"
+#include "firmware/model/damped_inverse.h"
 #include "firmware/model/prediction.h"
 
 namespace sidestep {
@@ -15,6 +16,8 @@ constexpr int kMaxSteps = 160;       // covers the longest pass_horizon, 10 s, a
 constexpr double kAfter_s = 0.2;     // of a rollout, after the last closest approach
 constexpr double kDeficitWeight_per_m = 1e4;
 constexpr double kPreviousEvasionFactor = 0.8;
+constexpr double kNullSpaceDamping = 0.01;
+constexpr double kLeastDirection = 0.1;  // a shorter projection on the null space is mostly the damping's error
 
 /// The obstacles of the near pairs at present, and the times of the closest approaches below pass_clearance: of the
 /// closest and of the last one, s.
@@ -166,6 +169,28 @@ ConstraintRows with_sides(const ConstraintRows& rows, const TwoSidedRows& two_si
   return changed;
 }
 
+/// Of the projections of the single joints on the null space of the tool's task, the longest one, n x 1.
+JointVector freest_direction(const TaskJacobian& jacobian) {
+  const Eigen::Index n = jacobian.cols();
+  JointVector longest = JointVector::Zero(n);
+  for (Eigen::Index joint = 0; joint < n; ++joint) {
+    JointVector direction = -damped_solve(jacobian, kNullSpaceDamping, TaskVector(jacobian.col(joint)));
+    direction[joint] += 1.0;
+    if (direction.squaredNorm() > longest.squaredNorm()) longest = direction;
+  }
+  return longest;
+}
+
+/// The largest factor with which from + factor * direction is within the range; `from` is.
+double largest_factor(const VelocityRange& range, const JointVector& from, const JointVector& direction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < direction.size(); ++i) {
+    const double bound = direction[i] > 0.0 ? range.upper_radps[i] : range.lower_radps[i];
+    if (direction[i] != 0.0) least = std::min(least, (bound - from[i]) / direction[i]);
+  }
+  return least;
+}
+
 bool is_threatened(const ConstraintRows& rows) {
   return std::any_of(rows.begin(), rows.end(),
                      [](const ConstraintRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
@@ -203,6 +228,15 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
       JointVector single = JointVector::Zero(input.arm.joints);
       single[joint] = speed;
       consider(single, 1.0);
+    }
+  }
+  const JointVector direction = freest_direction(objective.tool_jacobian);
+  if (objective.tool_jacobian.rows() == 6 && direction.norm() > kLeastDirection) {
+    const JointVector from = wanted_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
+    const double forward = largest_factor(range, from, direction), back = largest_factor(range, from, -direction);
+    for (const double share : {1.0, 0.5, 0.25}) {
+      consider(from + share * forward * direction, 1.0);
+      consider(from - share * back * direction, 1.0);
     }
   }
   for (int joint = 0; input.is_stopping && joint < input.arm.joints && rollout_cost.touches(best); ++joint) {

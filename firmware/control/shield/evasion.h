@@ -22,6 +22,9 @@ namespace sidestep {
 ///     considered, those with the largest b. Each of them keeps its side or changes it; that gives up to 15 programmes
 ///     besides that of the plan
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
+///   - for a full pose, whose tool the other joints at rest would leave behind: the nominal velocity (within the range)
+///     plus a velocity in the null space of the tool's task, in both directions, as large as the range permits, a half
+///     and a quarter of it. The direction is the longest projection of a single joint on the null space
 ///   - of an arm that stops, and thus follows no guide, where the cheapest of these still comes to contact: it with one
 ///     joint at the lower bound, at rest or at the upper bound, joint by joint, each time from the cheapest so far
 ///
@@ -32,7 +35,7 @@ namespace sidestep {
 /// the nominal velocity leads back to the target.
 ///
 /// `planned_radps` is the plan, n x 1; `rows` and `range` are those of its programme. Bounded: at most 15 programmes,
-/// of up to 3 solutions each, and 18 + 6 n rollouts for n joints (two of the plan, one of the previous evasion).
+/// of up to 3 solutions each, and 24 + 6 n rollouts for n joints (two of the plan, one of the previous evasion).
 /// Without the trigger there is one rollout, without a pass row with b > 0 none.
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps);

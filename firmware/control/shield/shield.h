@@ -20,9 +20,10 @@ struct ShieldInput {
   const std::vector<SelfPair>& self_pairs;
   const JointVector& evasion_radps;  ///< the evasion chosen in the previous cycle; size 0: none
   double period_s;
-  double comfort_weight;       ///< weight of the comfort tier in this cycle, s2/m2
-  double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
-  bool is_stopping = false;    ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
+  double comfort_weight;            ///< weight of the comfort tier in this cycle, s2/m2
+  double person_weight = 0.0;       ///< of the separation from persons in this cycle; 0: comfort as from anything else
+  bool is_stopping = false;         ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
+  double tool_weight_factor = 1.0;  ///< of ShieldSettings::tool_weight in this cycle
 };
 
 /// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
@@ -63,8 +64,8 @@ struct ShieldResult {
 ///   u        nominal joint velocity, n x 1, rad/s (prismatic joints: m/s)
 ///   S        diag(Arm::joint_scale): 0.25 m/s of a prismatic joint weigh as much as 1 rad/s
 ///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m
-///   w        ShieldSettings::tool_weight, 1/m2: this term makes the arm avoid obstacles in the null space of the
-///            tool's task where that is possible
+///   w        ShieldSettings::tool_weight times tool_weight_factor, 1/m2: this term makes the arm avoid obstacles in
+///            the null space of the tool's task where that is possible
 ///   a_i      1 x n: rate at which the distance of pair i grows with q';  b_i: least such rate, m/s
 ///   sigma_t  slack scale of tier t, m/s: a violation s costs 1/2 (s / sigma_t)^2. hard 1e-3, pass 3e-2,
 ///            comfort 1 / sqrt(comfort_weight) of the cycle: 2.2 at the target, 3e-2 far from it by default
