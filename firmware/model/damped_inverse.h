@@ -25,8 +25,8 @@ template <typename Jacobian>
 JointVector damped_solve(
     const Jacobian& jacobian, double lambda,
     const Eigen::Matrix<double, Jacobian::RowsAtCompileTime, 1, 0, Jacobian::MaxRowsAtCompileTime, 1>& b) {
-  constexpr int kRows = Jacobian::RowsAtCompileTime, kMaxRows = Jacobian::MaxRowsAtCompileTime;
-  Eigen::Matrix<double, kRows, kRows, 0, kMaxRows, kMaxRows> gram = jacobian.lazyProduct(jacobian.transpose());
+  constexpr int kRows = Jacobian::RowsAtCompileTime, kRowLimit = Jacobian::MaxRowsAtCompileTime;
+  Eigen::Matrix<double, kRows, kRows, 0, kRowLimit, kRowLimit> gram = jacobian.lazyProduct(jacobian.transpose());
   gram.diagonal().array() += lambda * lambda;
   return jacobian.transpose() * solve_ldlt(gram, b);
 }
