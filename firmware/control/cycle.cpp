@@ -28,24 +28,26 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, input));
 }
 
-/// How much the target's motion counts: from 0 at rest to 1 at 0.05 m/s and above.
-double moving_share(const Target& target) {
+/// How much the target's motion counts in the shield: from 0 at rest to 1 at 0.05 m/s and above. Only in TRACK: the
+/// target that the arm no longer follows may be old.
+double moving_share(const Target& target, Mode mode) {
   constexpr double kMoving_mps = 0.05;
+  if (mode != Mode::kTrack) return 0.0;
   const double speed_mps = target.velocity_mps.norm() + kTurnWeight_m * target.angular_velocity_radps.norm();
   return std::min(1.0, speed_mps / kMoving_mps);
 }
 
 /// Weight of the tool's rotation in the shield's programme, m/rad: that of the law where the pose moves, 1 where it
 /// rests, so that an arm that evades keeps a held object level.
-double turn_weight_m(const Target& target) {
-  return 1.0 - (1.0 - kTurnWeight_m) * moving_share(target);
+double turn_weight_m(double moving) {
+  return 1.0 - (1.0 - kTurnWeight_m) * moving;
 }
 
 /// Factor of the shield's tool_weight: 10 where the pose moves, which leaves little time to catch up after an evasion.
 /// Tuned on the campaign's chase6d; for poses at rest a large weight led to contacts in dodge6d.
-double tool_weight_factor(const Target& target) {
+double tool_weight_factor(const Target& target, double moving) {
   constexpr double kMovingPose = 10.0;
-  return target.tracks_orientation ? 1.0 + (kMovingPose - 1.0) * moving_share(target) : 1.0;
+  return target.tracks_orientation ? 1.0 + (kMovingPose - 1.0) * moving : 1.0;
 }
 
 NominalCommand scaled(NominalCommand nominal, double scale) {
@@ -75,6 +77,7 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
   const Mode mode = state.supervision.mode;
   const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
   if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
+  const double moving = moving_share(input.target, mode);
   const ShieldInput shield_input{model.arm,
                                  input.poses,
                                  input.position_rad,
@@ -87,9 +90,9 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                                  comfort,
                                  mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
                                  !moves(mode),
-                                 tool_weight_factor(input.target)};
+                                 tool_weight_factor(input.target, moving)};
   const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
-                                   weighted_task(input.tool_jacobian, turn_weight_m(input.target)), nominal_radps);
+                                   weighted_task(input.tool_jacobian, turn_weight_m(moving)), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;
   if (safe.links_limit) report.limiting |= kLimitingSelf;
   report.nearest_links = safe.nearest_links;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -31,6 +32,37 @@ void an_old_target_leads_to_hold_and_a_new_one_to_track(void**) {
     assert_true(loop.speed_radps() > 0);
     check_stream(loop);
   }
+}
+
+/// In HOLD the arm evades a sphere; the pose moved when its messages stopped, or rested.
+void the_motion_of_an_old_target_does_not_change_how_the_arm_evades(void**) {
+  ClosedLoop loop = tracking("sidestep");
+  loop.target.tracks_orientation = true;
+  loop.target.orientation = Quaternion(forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_rotation);
+  loop.run(1.0);
+  loop.sends_target = false;
+  assert_true(loop.run_until(Mode::kHold, 1.0));
+  loop.run(0.5);
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  loop.add_sphere(0.5 * (poses.origin[3] + poses.tool_position) + Vector3(0.5, 0, 0), Vector3(-1, 0, 0));
+  double fastest_radps = 0.0;
+  for (int cycle = 0; cycle < 60; ++cycle) {
+    Inputs inputs = loop.receive();
+    Target moving = *inputs.target.message, resting = moving;
+    moving.velocity_mps = Vector3(0.1, 0.2, 0);
+    moving.angular_velocity_radps = Vector3(0, 0, 0.3);
+    resting.velocity_mps = resting.angular_velocity_radps = Vector3::Zero();
+    inputs.target.message = &resting;
+    const Result rested = step(loop.model, loop.state, inputs, loop.now_s());
+    inputs.target.message = &moving;
+    const Result moved = step(loop.model, loop.state, inputs, loop.now_s());
+    assert_true(moved.report.mode == Mode::kHold);
+    check_near_because(moved.command.position_rad, rested.command.position_rad, 0.0, "cycle %d", cycle);
+    fastest_radps = std::max(fastest_radps, rested.command.velocity_radps.norm());
+    loop.follow(rested);
+  }
+  check(fastest_radps > 0.2, "the arm evades with only %g rad/s", fastest_radps);
+  check_stream(loop);
 }
 
 void old_obstacles_brake_and_grow(void**) {
@@ -273,6 +305,7 @@ void target_and_obstacles_are_extrapolated_to_the_current_cycle(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(an_old_target_leads_to_hold_and_a_new_one_to_track),
+      cmocka_unit_test(the_motion_of_an_old_target_does_not_change_how_the_arm_evades),
       cmocka_unit_test(old_obstacles_brake_and_grow),
       cmocka_unit_test(the_arm_does_not_start_on_old_obstacles),
       cmocka_unit_test(obstacles_received_in_the_future_are_not_farther_away),
