@@ -115,12 +115,11 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
 }
 
 /// Both rollouts start from the same snapshot: whether a coarse rollout just touches an obstacle may differ from one
-/// snapshot to the next.
+/// snapshot to the next. So the danger is not over because one of two forecasts misses it.
 void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
   const double collision_s = expected_.collision_s;
   expected_ = rollout_.run(now, guide_);
-  if (std::isfinite(collision_s) &&
-      !expected_.collides) {  // the danger is not over because one of two forecasts misses it
+  if (std::isfinite(collision_s) && !expected_.collides) {
     expected_.collides = true;
     expected_.collision_s = collision_s;
     expected_.cost_s += kCollisionCost_s;

@@ -230,8 +230,9 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
       consider(single, 1.0);
     }
   }
-  const JointVector direction = freest_direction(objective.tool_jacobian);
-  if (objective.tool_jacobian.rows() == 6 && direction.norm() > kLeastDirection) {
+  const bool is_full_pose = objective.tool_jacobian.rows() == 6;
+  const JointVector direction = is_full_pose ? freest_direction(objective.tool_jacobian) : JointVector();
+  if (direction.norm() > kLeastDirection) {
     const JointVector from = wanted_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
     const double forward = largest_factor(range, from, direction), back = largest_factor(range, from, -direction);
     for (const double share : {1.0, 0.5, 0.25}) {

@@ -22,9 +22,9 @@ namespace sidestep {
 ///     considered, those with the largest b. Each of them keeps its side or changes it; that gives up to 15 programmes
 ///     besides that of the plan
 ///   - each joint at the lower or upper bound of the range with the other joints at rest
-///   - for a full pose, whose tool the other joints at rest would leave behind: the nominal velocity (within the range)
-///     plus a velocity in the null space of the tool's task, in both directions, as large as the range permits, a half
-///     and a quarter of it. The direction is the longest projection of a single joint on the null space
+///   - for a full pose: the nominal velocity (within the range) plus a velocity in the null space of the tool's task.
+///     Its direction is the longest projection of a single joint on the null space, forward and backward; it is as
+///     large as the range permits, a half and a quarter of that
 ///   - of an arm that stops, and thus follows no guide, where the cheapest of these still comes to contact: it with one
 ///     joint at the lower bound, at rest or at the upper bound, joint by joint, each time from the cheapest so far
 ///

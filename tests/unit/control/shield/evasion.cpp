@@ -206,7 +206,7 @@ void a_full_pose_is_kept_where_a_motion_in_its_null_space_evades(void**) {
     if (!plan.evading || svd.singularValues()[5] < 0.1) continue;
     for (const double sign : {1.0, -1.0}) {
       JointVector aside = sign * svd.matrixV().col(6);
-      const auto shares =
+      const JointVector shares =
           aside.cwiseQuotient(scene.range.upper_radps).cwiseMax(aside.cwiseQuotient(scene.range.lower_radps));
       aside /= shares.maxCoeff();
       if (scene.least_clearance_m(aside) < hard_m + kRolloutError_m) continue;
