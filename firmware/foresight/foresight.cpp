@@ -14,6 +14,10 @@ constexpr int kSearchesUntilWaiting = 50;
 constexpr int kSearchesAfterBad = 20;
 constexpr int kTrustedInARow = 4;
 
+// Among persons a retreat lasts until the law alone has been the better choice for a second.
+constexpr int kTrustedAmongPersons = 20;
+constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the arm looks for a retreat
+
 // So often a search looks for a self-motion alone, while the tool is in place and no collision is near.
 constexpr int kSelfMotionSearches = 20;
 constexpr double kInPlace_m = 0.1;
@@ -34,7 +38,7 @@ bool everything_rests(const Snapshot& now) {
 /// on the campaign's chase6d and follow6d; not tried for positions).
 bool is_good(const Snapshot& now, const Forecast& forecast) {
   if (now.tracking && is_moving_pose(now.target)) return forecast.collision_s > kTargetCoast_s;
-  return !forecast.collides && forecast.cost_s < kGoodCost_s;
+  return !forecast.collides && forecast.cost_s - forecast.proximity_s < kGoodCost_s;
 }
 
 /// Whether the tool is at the position of a target at rest, or nearly so.
@@ -57,6 +61,7 @@ void Foresight::reset(bool tracking) {
   searches_left_ = 0;
   faster_left_ = 0;
   candidate_stuck_ = false;
+  planned_retreat_from_persons_ = false;
   goal_.forget_goal();
 }
 
@@ -72,14 +77,17 @@ void Foresight::assess(const Snapshot& now) {
   expected_ = rollout_.run(now, guide_);
   if (guide_.knots > 0) {
     const Forecast direct = rollout_.run(now, Guide{});
-    direct_in_a_row_ = direct.collides ? 0 : direct_in_a_row_ + 1;
+    const bool among_persons = direct.proximity_s > 0.0;
+    const bool is_safe = !direct.collides && (!among_persons || direct.cost_s < expected_.cost_s);
+    direct_in_a_row_ = is_safe ? direct_in_a_row_ + 1 : 0;
     const bool is_retreat = guide_.foresight_status == ForesightStatus::kWaiting;
     const bool is_over = !now.tracking && !direct.collides && now.now_s >= guide_.end_s();
     const bool is_better =
         direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s);
     // A retreat leads out of a danger that forecasts see by turns. One that seems to collide itself is not given up for
     // a law that collides as well.
-    const bool is_trusted = !is_retreat || direct_in_a_row_ >= (expected_.collides ? 1 : kTrustedInARow);
+    const int enough = among_persons ? kTrustedAmongPersons : expected_.collides ? 1 : kTrustedInARow;
+    const bool is_trusted = !is_retreat || direct_in_a_row_ >= enough;
     if (is_over || (is_better && is_trusted)) adopt(Guide{}, direct);
   }
   if (is_good(now, expected_)) {
@@ -138,8 +146,17 @@ void Foresight::search_faster(const Snapshot& now) {
   if (candidate_.end_s() > now.now_s + expected_.cost_s - kClearlyEarlier_s) candidate_ = Guide{};
 }
 
+/// In every other search an arm that persons keep from its target looks for a configuration farther away from them.
+bool Foresight::plans_retreat_from_persons(const Snapshot& now) {
+  if (!now.tracking || expected_.arrives || expected_.proximity_s <= kNearPersons_s) return false;
+  planned_retreat_from_persons_ = !planned_retreat_from_persons_;
+  return planned_retreat_from_persons_;
+}
+
 void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) return evaluate_candidate(now, kWorthAChange_s);
+  if (plans_retreat_from_persons(now)) candidate_ = planner_.plan_retreat_from_persons(now);
+  if (candidate_.knots > 0) return;
   candidate_ = now.tracking ? plan_to_goal(now) : Guide{};
   if (candidate_.knots > 0) return;
   if (expected_.collides && !prefers_self_motion(now)) candidate_ = planner_.plan_retreat(now);

@@ -43,6 +43,11 @@ class Foresight {
   /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone: the arm
   /// changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
   ///
+  /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
+  /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with
+  /// plan_retreat_from_persons() first. Where persons are, a retreat is dropped only after 20 assessments in a row in
+  /// which the rollout without it neither collides nor costs as much.
+  ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not
   /// arrive. The law alone then continues.
@@ -69,6 +74,7 @@ class Foresight {
   void search_faster(const Snapshot& now);
   void evaluate_candidate(const Snapshot& now, double worth_s);
   bool prefers_self_motion(const Snapshot& now) const;
+  bool plans_retreat_from_persons(const Snapshot& now);
   Guide plan_to_goal(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
 
@@ -86,8 +92,9 @@ class Foresight {
   Expectation expectation_;       ///< of expected_
   Guide candidate_;               ///< a plan that has no rollout yet; no knots: none
   bool candidate_stuck_ = false;  ///< the arm would not reach the posture by the last candidate, though it hits nothing
-  int direct_in_a_row_ = 0;       ///< assessments since guide_ was adopted whose rollout without it did not collide
-  int self_motions_left_ = 0;     ///< searches for a self-motion alone, for the present guide or the law alone
+  bool planned_retreat_from_persons_ = false;  ///< in the last search near persons
+  int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted whose rollout without it did not collide
+  int self_motions_left_ = 0;      ///< searches for a self-motion alone, for the present guide or the law alone
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };
 

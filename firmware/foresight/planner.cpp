@@ -1,9 +1,11 @@
 #include "firmware/foresight/planner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/foresight/inverse_kinematics.h"
+#include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
 #include "firmware/foresight/self_motion.h"
 #include "firmware/model/prediction.h"
@@ -35,6 +37,7 @@ constexpr double kDetour_rad = 1.5;
 // The range of a retreat around the present configuration per joint; every other one may lead farther.
 constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
+constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
 
 // A guide ends so much before the horizon, so that the clearance at its end is known for as long.
 constexpr double kStayAtGoal_s = 1.0;
@@ -42,6 +45,11 @@ constexpr double kStayAtGoal_s = 1.0;
 // So much below the clearance at the start, and for so long, a guide may lead on the arm's path out.
 constexpr double kStartAllowance_m = 0.005;
 constexpr double kStartPhase_s = 0.5;
+
+void predict(const NearbyObstacles& nearby, double after_s, NearbyObstacles& then) {
+  then.count = nearby.count;
+  for (int i = 0; i < nearby.count; ++i) then.obstacles[i] = predicted_obstacle(nearby.obstacles[i], after_s);
+}
 
 /// A position limit; half a turn where a joint has none. (A prismatic joint has one.)
 double bounded(double limit_rad, double otherwise_rad) {
@@ -82,13 +90,14 @@ void Planner::append(Guide& guide, const JointVector& q_rad) const {
 }
 
 /// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).
-bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
+bool Planner::is_clear(const Snapshot& from, const Guide& guide) {
   const ForesightSettings& settings = model_.settings.foresight;
   const double enough_m = settings.clearance_m;
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
-    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
-                           from.nearby.count, after_s, enough_m);
+    predict(from.nearby, after_s, then_);
+    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), then_.obstacles.data(),
+                           then_.count, 0.0, enough_m);
   };
   const bool retreats = guide.foresight_status == ForesightStatus::kWaiting;
   const double at_start_m =
@@ -110,10 +119,13 @@ bool Planner::find_goal(const Snapshot& from, const Target& target, JointVector&
   return solve_ik(model_.arm, target, goal_rad);
 }
 
+bool Planner::ends_in_time(const Snapshot& from, const Guide& guide) const {
+  return guide.end_s() <= from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
+}
+
 /// Replaces the best guide so far by one that ends before it, in time, and is clear.
-void Planner::take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const {
-  const double latest_end_s = from.now_s + model_.settings.foresight.horizon_s - kStayAtGoal_s;
-  if (guide.end_s() > latest_end_s) return;
+void Planner::take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) {
+  if (!ends_in_time(from, guide)) return;
   if (best.knots > 0 && guide.end_s() >= best.end_s()) return;
   if (is_clear(from, guide)) best = guide;
 }
@@ -163,6 +175,30 @@ Guide Planner::plan_retreat(const Snapshot& from) {
     if (is_clear(from, guide)) return guide;
   }
   return {};
+}
+
+Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
+  constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
+  const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
+  NearbyObstacles in_the_end;
+  predict(from.nearby, model_.settings.foresight.horizon_s, in_the_end);
+  const auto proximity = [&](const JointVector& q_rad) {
+    const LinkPoses poses = forward_kinematics(model_.arm, q_rad, others);
+    return person_proximity(poses, in_the_end.obstacles.data(), in_the_end.count);
+  };
+  double least = proximity(from.arm.position_rad);
+  Guide best;
+  for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
+    const JointVector q_rad = random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]);
+    const double found = proximity(q_rad);
+    if (found >= least) continue;
+    Guide guide = start_of(from, ForesightStatus::kWaiting);
+    append(guide, q_rad);
+    if (!ends_in_time(from, guide) || !is_clear(from, guide)) continue;
+    least = found;
+    best = guide;
+  }
+  return best;
 }
 
 }  // namespace sidestep

@@ -6,7 +6,7 @@
 namespace sidestep {
 
 /// Searches for guides by random sampling: joint paths in time that keep clear of the obstacles at their present
-/// velocities.
+/// velocities, persons as predicted_obstacle().
 ///
 /// A guide leads from the present configuration to a goal configuration, possibly after a pause, and possibly through
 /// one intermediate configuration. It starts with zero velocity, although the arm may be moving. Between two knots
@@ -38,17 +38,25 @@ class Planner {
   /// without knots if no try succeeds.
   Guide plan_retreat(const Snapshot& from);
 
+  /// 200 tries. The goal configuration is random, each joint within 1 rad, within 2 rad, or anywhere, in turns. Returns
+  /// the guide to the configuration with the least person_proximity() among those that are clear, less than the present
+  /// one's, persons where predicted_obstacle() has them in the end; with ForesightStatus::kWaiting, without knots if no
+  /// try succeeds. It ends at least 1 s before the horizon.
+  Guide plan_retreat_from_persons(const Snapshot& from);
+
  private:
   Guide start_of(const Snapshot& from, ForesightStatus status) const;
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
-  bool is_clear(const Snapshot& from, const Guide& guide) const;
-  void take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const;
+  bool is_clear(const Snapshot& from, const Guide& guide);
+  bool ends_in_time(const Snapshot& from, const Guide& guide) const;
+  void take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best);
   void append(Guide& guide, const JointVector& q_rad) const;
 
   const Model& model_;
   SplitMix64 random_;
   bool found_goal_ = false;
+  NearbyObstacles then_;  ///< of a snapshot, at some later time
 };
 
 }  // namespace sidestep

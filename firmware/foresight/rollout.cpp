@@ -4,6 +4,7 @@
 
 #include "firmware/control/extrapolation.h"
 #include "firmware/control/shield/required_clearance.h"
+#include "firmware/foresight/person_proximity.h"
 #include "firmware/model/clearance.h"
 #include "firmware/model/prediction.h"
 
@@ -44,8 +45,16 @@ double away_share(const LinkPoses& poses, const Target& target, bool moves) {
   return moves ? std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m) : 1.0;
 }
 
-void advance(ObstacleSet& set, double dt_s) {
-  for (int i = 0; i < set.count; ++i) set.obstacles[i] = extrapolated(set.obstacles[i], dt_s);
+/// By dt_s, to after_s from the beginning; as predicted_obstacle().
+void advance(ObstacleSet& set, double dt_s, double after_s) {
+  for (int i = 0; i < set.count; ++i) {
+    Obstacle& obstacle = set.obstacles[i];
+    if (obstacle.kind == Kind::kPerson && after_s > kPersonCoast_s) {
+      obstacle.velocity_mps.setZero();
+      obstacle.angular_velocity_radps.setZero();
+    }
+    obstacle = extrapolated(obstacle, dt_s);
+  }
 }
 
 }  // namespace
@@ -56,6 +65,10 @@ Target predicted_target(const Target& target, double after_s) {
   then.velocity_mps.setZero();
   then.angular_velocity_radps.setZero();
   return then;
+}
+
+Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s) {
+  return extrapolated(obstacle, obstacle.kind == Kind::kPerson ? std::min(after_s, kPersonCoast_s) : after_s);
 }
 
 bool is_at_rest(const Target& target) {
@@ -143,7 +156,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     after_s += period_s;
     const double now_s = from.now_s + after_s;
     const Target target = predicted_target(from.target, after_s);
-    advance(obstacles_, period_s);
+    advance(obstacles_, period_s, after_s);
     arm.utime += std::llround(period_s * 1e6);
     const int64_t count = state.arm_monitor.count + 1;
     Inputs inputs{{&arm, now_s, count}, {}, {&obstacles_, now_s, count}};
@@ -173,6 +186,11 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   }
   if (!forecast.arrives) forecast.cost_s += away * kNoArrivalCost_s;
   if (forecast.collides) forecast.cost_s += kCollisionCost_s;
+  if (from.tracking && shield.person_weight > 0.0) {
+    const LinkPoses poses = forward_kinematics(model_.arm, arm.position_rad, others);
+    forecast.proximity_s = kProximityCost_s * person_proximity(poses, obstacles_.obstacles.data(), obstacles_.count);
+    forecast.cost_s += forecast.proximity_s;
+  }
   return forecast;
 }
 

@@ -12,6 +12,7 @@ constexpr double kForecastPath_s = 0.5;  ///< a forecast keeps the arm's path fo
 constexpr int kMaxPathPoints = 64;
 
 constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a collision decides
+constexpr double kProximityCost_s = 60.0;  ///< of persons at all links; tuned on the campaign's two-people@camera
 
 /// The result of a rollout.
 struct Forecast {
@@ -20,6 +21,8 @@ struct Forecast {
   double collision_s = std::numeric_limits<double>::infinity();  ///< time of the first collision after the snapshot
   double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
                         ///< The first two count in full from 0.1 m on if the target is a moving pose, less below
+  double proximity_s = 0.0;  ///< the further part of cost_s for the nearness of persons at the end, in TRACK:
+                             ///< kProximityCost_s person_proximity(); 0 if shield.person_weight is 0
 
   double period_s = 0.0;                              ///< between two points of the path
   BoundedList<JointVector, kMaxPathPoints> path_rad;  ///< one period after the snapshot, and so on
@@ -27,8 +30,8 @@ struct Forecast {
 
 /// Simulates the next foresight.horizon_s seconds, in the mode of the snapshot, with the controller's own step() and an
 /// ideal arm, which follows each command exactly. The period is 10 ms for 0.6 s and then 30 ms, unless the controller's
-/// is longer. Obstacles keep their velocities; the target moves as predicted_target(). A simulation ends early when the
-/// arm rests and nothing could move it any more. About 600 kB: lives on the heap.
+/// is longer. Obstacles move as predicted_obstacle(), the target as predicted_target(). A simulation ends early when
+/// the arm rests and nothing could move it any more. About 600 kB: lives on the heap.
 class Rollout {
  public:
   explicit Rollout(const Model& model);
@@ -47,6 +50,13 @@ class Rollout {
 
 /// For how long a target is assumed to keep its velocity.
 constexpr double kTargetCoast_s = 1.0;
+
+/// For how long a person is assumed to keep its velocity: limbs swing and turn back, and what a camera takes for the
+/// velocity of one at rest is noise.
+constexpr double kPersonCoast_s = 0.3;
+
+/// The obstacle after_s later: it keeps its velocity, a person for kPersonCoast_s.
+Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s);
 
 /// Whether both targets are of the same kind, and postures agree within 0.005 rad (times joint_scale) per joint: a
 /// forecast or plan for one is good for the other, the law bridges the rest.

@@ -26,7 +26,7 @@ class TreePlanner {
 
   /// One slice, from a snapshot in TRACK. Returns a guide, with ForesightStatus::kGuided, in the slice that completes
   /// one; it starts with zero velocity, now or after a pause, ends at least 1 s before the horizon, and up to the
-  /// horizon obstacles that move or turn, at their present velocities, stay foresight.clearance_m away (slow ones less,
+  /// horizon obstacles that move or turn, as predicted_obstacle(), stay foresight.clearance_m away (slow ones less,
   /// required_clearance.h). Else without knots, for example while the target moves.
   Guide plan(const Snapshot& from) { return run_slice(from, std::numeric_limits<double>::infinity()); }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "firmware/foresight/person_proximity.h"
 #include "tests/support/check.h"
-#include "tests/support/closed_loop.h"
+#include "tests/support/foresight_loop.h"
 
 using namespace sidestep;
 using test::ClosedLoop;
@@ -75,6 +76,50 @@ void the_target_is_reached_when_the_person_has_left(void**) {
   check(loop.last.report.target_distance_m < 1e-3, "%g m", loop.last.report.target_distance_m);
 }
 
+/// The tool is at its target, 0.3 m from a person on either side, who stand there.
+test::ForesightLoop between_two_persons(bool foresight) {
+  const Vector3 tool_m = forward_kinematics(test::lwa3(), test::home_rad()).tool_position;
+  test::ForesightLoop world(test::point_target(tool_m), test::home_rad(), "sidestep", foresight);
+  const Vector3 aside(-tool_m.y(), tool_m.x(), 0.0);
+  for (const double side : {-1.0, 1.0}) {
+    const Vector3 centre_m = tool_m + side * 0.45 * aside.normalized();
+    Obstacle& person = world.loop.add_sphere(centre_m, Vector3::Zero(), 0.15);
+    person = capsule_obstacle(Vector3(centre_m.x(), centre_m.y(), 0.3), Matrix3::Identity(), 0.15, 1.2);
+    person.kind = Kind::kPerson;
+  }
+  return world;
+}
+
+double proximity(const test::ForesightLoop& world) {
+  const LinkPoses poses = forward_kinematics(world.loop.model.arm, world.loop.arm.position_rad);
+  return person_proximity(poses, world.loop.obstacles->obstacles.data(), world.loop.obstacles->count);
+}
+
+void between_two_persons_the_arm_retreats_farther_than_the_shield_alone(void**) {
+  test::ForesightLoop world = between_two_persons(true), alone = between_two_persons(false);
+  world.run(6.0);
+  alone.run(6.0);
+  check(proximity(world) < 0.6 * proximity(alone), "%g, %g without foresight", proximity(world), proximity(alone));
+  test::check_stream(world.loop);
+  world.run(14.0);
+  double largest_radps = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    world.cycle();
+    largest_radps = std::max(largest_radps, world.loop.last.command.velocity_radps.cwiseAbs().maxCoeff());
+  }
+  check(largest_radps < 0.02, "%g rad/s", largest_radps);
+}
+
+void from_a_retreat_the_arm_returns_when_the_persons_have_left(void**) {
+  test::ForesightLoop world = between_two_persons(true);
+  world.run(6.0);
+  check(world.error_m() > 0.1, "%g m", world.error_m());
+  world.loop.obstacles->count = 0;
+  world.run(5.0);
+  check(world.error_m() < 1e-3, "%g m", world.error_m());
+  test::check_stream(world.loop);
+}
+
 void in_hold_a_person_does_not_drive_the_arm_away(void**) {
   ClosedLoop loop = beside(Kind::kPerson, false);
   const JointVector start_rad = loop.arm.position_rad;
@@ -99,6 +144,8 @@ int main() {
       cmocka_unit_test(the_arm_gives_way_from_the_protective_distance_on),
       cmocka_unit_test(an_arm_beside_a_person_who_rests_comes_to_rest_without_trembling),
       cmocka_unit_test(the_target_is_reached_when_the_person_has_left),
+      cmocka_unit_test(between_two_persons_the_arm_retreats_farther_than_the_shield_alone),
+      cmocka_unit_test(from_a_retreat_the_arm_returns_when_the_persons_have_left),
       cmocka_unit_test(in_hold_a_person_does_not_drive_the_arm_away),
       cmocka_unit_test(without_its_weight_there_is_no_separation),
   };

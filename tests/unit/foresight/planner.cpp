@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
 #include "firmware/model/proximity.h"
 #include "tests/support/check.h"
@@ -31,7 +32,7 @@ double clearance_m(const JointVector& q_rad, const NearbyObstacles& nearby, doub
   const LinkPoses poses = forward_kinematics(lwa3(), q_rad);
   double least_m = 1e9;
   for (int o = 0; o < nearby.count; ++o) {
-    const Obstacle then = extrapolated(nearby.obstacles[static_cast<size_t>(o)], after_s);
+    const Obstacle then = predicted_obstacle(nearby.obstacles[static_cast<size_t>(o)], after_s);
     for (const LinkShape& shape : lwa3().shapes)
       if (shape.body > 0) least_m = std::min(least_m, measure_pair(transformed(poses, shape), then).distance_m);
   }
@@ -54,6 +55,7 @@ void add(Snapshot& snapshot, const Obstacle& obstacle) {
 }
 
 /// A random configuration and target among three spheres and three boxes that move and turn, clear of the arm at first.
+/// A box and a sphere of them are persons.
 std::unique_ptr<Snapshot> random_world(Random& random) {
   auto snapshot = empty_world();
   snapshot->arm.position_rad = random.configuration(lwa3(), 0.8);
@@ -66,6 +68,7 @@ std::unique_ptr<Snapshot> random_world(Random& random) {
                             : sphere_obstacle(centre, random.uniform(0.03, 0.15));
     obstacle.velocity_mps = random.inside(-0.15, 0.15);
     obstacle.angular_velocity_radps = random.inside(-0.3, 0.3);
+    if (snapshot->nearby.count % 3 == 0) obstacle.kind = Kind::kPerson;
     add(*snapshot, obstacle);
     if (clearance_m(snapshot->arm.position_rad, snapshot->nearby, 0.0) < 0.02) --snapshot->nearby.count;
   }
@@ -117,6 +120,31 @@ void a_retreat_is_clear_of_the_obstacles_as_they_move(void**) {
   for_random_plans(&Planner::plan_retreat, 30, check_clear);
 }
 
+void a_retreat_from_persons_is_clear_of_the_obstacles_as_they_move(void**) {
+  for_random_plans(&Planner::plan_retreat_from_persons, 100, check_clear);
+}
+
+void a_retreat_from_persons_ends_farther_away_from_them(void**) {
+  double start = 0.0, end = 0.0;
+  const auto compare = [&](const Snapshot& snapshot, const Guide& guide) {
+    assert_int_equal(static_cast<int>(guide.foresight_status), static_cast<int>(ForesightStatus::kWaiting));
+    check(guide.end_s() <= snapshot.now_s + settings().horizon_s - 1.0, "ends at %g s", guide.end_s());
+    NearbyObstacles then;
+    then.count = snapshot.nearby.count;
+    for (size_t i = 0; i < static_cast<size_t>(then.count); ++i)
+      then.obstacles[i] = predicted_obstacle(snapshot.nearby.obstacles[i], settings().horizon_s);
+    const auto proximity = [&](const JointVector& q_rad) {
+      return person_proximity(forward_kinematics(lwa3(), q_rad), then.obstacles.data(), then.count);
+    };
+    const double from = proximity(snapshot.arm.position_rad), to = proximity(guide.position_rad[1]);
+    check(to < from, "%g at the end, %g at the start", to, from);
+    start += from;
+    end += to;
+  };
+  for_random_plans(&Planner::plan_retreat_from_persons, 100, compare);
+  check(end < 0.5 * start, "%g of %g remain", end, start);
+}
+
 void a_plan_starts_at_rest_in_the_present_configuration(void**) {
   const auto check_start = [](const Snapshot& snapshot, const Guide& guide) {
     assert_true(guide.position_rad[0] == snapshot.arm.position_rad);
@@ -128,6 +156,7 @@ void a_plan_starts_at_rest_in_the_present_configuration(void**) {
   };
   for_random_plans(&Planner::plan_to_target, 30, check_start);
   for_random_plans(&Planner::plan_retreat, 30, check_start);
+  for_random_plans(&Planner::plan_retreat_from_persons, 30, check_start);
 }
 
 void a_plan_keeps_the_limits_of_the_joints(void**) {
@@ -145,6 +174,7 @@ void a_plan_keeps_the_limits_of_the_joints(void**) {
   };
   for_random_plans(&Planner::plan_to_target, 30, check_limits_of);
   for_random_plans(&Planner::plan_retreat, 30, check_limits_of);
+  for_random_plans(&Planner::plan_retreat_from_persons, 30, check_limits_of);
 }
 
 void a_plan_to_the_target_ends_there_a_second_before_the_horizon(void**) {
@@ -228,10 +258,12 @@ void a_call_makes_six_tries(void**) {
 void where_nothing_is_clear_there_is_no_plan(void**) {
   const auto snapshot = empty_world();
   add(*snapshot, sphere_obstacle(Vector3(0, 0, 0.7), 2.0));
+  snapshot->nearby.obstacles[0].kind = Kind::kPerson;
   Planner planner(model());
   for (int call = 0; call < 20; ++call) {
     assert_int_equal(planner.plan_to_target(*snapshot).knots, 0);
     assert_int_equal(planner.plan_retreat(*snapshot).knots, 0);
+    assert_int_equal(planner.plan_retreat_from_persons(*snapshot).knots, 0);
   }
 }
 
@@ -241,6 +273,8 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_plan_to_the_target_is_clear_of_the_obstacles_as_they_move),
       cmocka_unit_test(a_retreat_is_clear_of_the_obstacles_as_they_move),
+      cmocka_unit_test(a_retreat_from_persons_is_clear_of_the_obstacles_as_they_move),
+      cmocka_unit_test(a_retreat_from_persons_ends_farther_away_from_them),
       cmocka_unit_test(a_plan_starts_at_rest_in_the_present_configuration),
       cmocka_unit_test(a_plan_keeps_the_limits_of_the_joints),
       cmocka_unit_test(a_plan_to_the_target_ends_there_a_second_before_the_horizon),

@@ -1,7 +1,9 @@
 #include "firmware/foresight/rollout.h"
 
+#include <cmath>
 #include <memory>
 
+#include "firmware/foresight/person_proximity.h"
 #include "firmware/model/prediction.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/check.h"
@@ -72,6 +74,24 @@ void a_target_keeps_its_velocity_for_a_second_and_then_rests(void**) {
   }
 }
 
+/// A capsule that moves and turns.
+void a_person_keeps_its_velocity_for_300_ms_and_then_rests(void**) {
+  Obstacle obstacle = capsule_obstacle(Vector3(1, 2, 3), Matrix3::Identity(), 0.05, 0.4);
+  obstacle.velocity_mps = Vector3(0.1, 0, 0);
+  obstacle.angular_velocity_radps = Vector3(0, 2.0, 0);
+  for (const double after_s : {0.0, 0.1, 0.3, 0.5, 4.0}) {
+    for (const Kind kind : {Kind::kThing, Kind::kPerson}) {
+      obstacle.kind = kind;
+      const Obstacle then = predicted_obstacle(obstacle, after_s);
+      const double moving_s = kind == Kind::kPerson ? std::min(after_s, 0.3) : after_s, turn_rad = 2.0 * moving_s;
+      const Vector3 half_m = 0.2 * Vector3(std::sin(turn_rad), 0, std::cos(turn_rad));
+      const Vector3 centre_m = Vector3(1, 2, 3) + moving_s * obstacle.velocity_mps;
+      check_near(then.capsule.start, centre_m - half_m, 1e-12);
+      check_near(then.capsule.end, centre_m + half_m, 1e-12);
+    }
+  }
+}
+
 void the_tool_is_at_the_target_within_10_mm_and_a_twentieth_of_a_radian(void**) {
   const LinkPoses poses = forward_kinematics(test::lwa3(), test::home_rad());
   Target target;
@@ -132,6 +152,38 @@ void a_rollout_meets_an_obstacle_that_comes_too_fast(void**) {
   check(forecast.cost_s >= 20.0, "cost %g s", forecast.cost_s);
 }
 
+/// One that is still 2.4 m away when it is assumed to stop.
+void a_rollout_does_not_meet_a_person_who_is_far_away(void**) {
+  ClosedLoop loop = test::tracking("sidestep");
+  loop.add_sphere(Vector3(0, 3.0, 0.6), Vector3(0, -1.9, 0), 0.5).kind = Kind::kPerson;
+  assert_false(forecast_of(loop).collides);
+}
+
+/// Of an arm at its target, which it keeps.
+void in_track_the_nearness_of_persons_costs_unless_their_separation_is_off(void**) {
+  for (const Kind kind : {Kind::kThing, Kind::kPerson}) {
+    for (const double weight : {0.0, 1e-3}) {
+      for (const bool tracks : {false, true}) {
+        ClosedLoop loop = test::at_home("sidestep");
+        loop.model.settings.shield.person_weight = weight;
+        loop.target.position_m = forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position;
+        loop.sends_target = tracks;
+        Obstacle& obstacle = loop.add_sphere(loop.target.position_m + Vector3(0.3, 0, 0), Vector3::Zero(), 0.05);
+        obstacle.kind = kind;
+        loop.run(2.0);
+        const Forecast forecast = forecast_of(loop);
+        const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+        const bool costs = kind == Kind::kPerson && weight > 0.0 && tracks;
+        const double expected_s = costs ? 60.0 * person_proximity(poses, &obstacle, 1) : 0.0;
+        assert_true(!costs || expected_s > 1.0);
+        check_near_because(forecast.proximity_s, expected_s, 0.1 * expected_s, "kind %d, weight %g, tracks %d",
+                           static_cast<int>(kind), weight, tracks);
+        check_near_because(forecast.cost_s, forecast.proximity_s, 1e-12, "the arm is at its target");
+      }
+    }
+  }
+}
+
 /// The cost counts the whole horizon, although the arm rests soon and its simulation ends.
 void an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing(void**) {
   ClosedLoop loop = test::tracking("sidestep");
@@ -190,11 +242,14 @@ int main() {
       cmocka_unit_test(of_too_many_obstacles_a_snapshot_keeps_those_that_come_nearest_to_the_arm),
       cmocka_unit_test(a_snapshot_keeps_the_nearest_obstacles_at_rest),
       cmocka_unit_test(a_target_keeps_its_velocity_for_a_second_and_then_rests),
+      cmocka_unit_test(a_person_keeps_its_velocity_for_300_ms_and_then_rests),
       cmocka_unit_test(the_tool_is_at_the_target_within_10_mm_and_a_twentieth_of_a_radian),
       cmocka_unit_test(a_rollout_with_a_clear_path_arrives_at_the_cost_of_the_time_it_takes),
       cmocka_unit_test(the_near_future_is_forecast_as_it_comes),
       cmocka_unit_test(a_rollout_to_a_target_inside_an_obstacle_does_not_arrive),
       cmocka_unit_test(a_rollout_meets_an_obstacle_that_comes_too_fast),
+      cmocka_unit_test(a_rollout_does_not_meet_a_person_who_is_far_away),
+      cmocka_unit_test(in_track_the_nearness_of_persons_costs_unless_their_separation_is_off),
       cmocka_unit_test(an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing),
       cmocka_unit_test(an_arm_at_rest_still_expects_an_obstacle_that_comes_late),
       cmocka_unit_test(a_collision_is_judged_by_the_hard_clearance_of_the_settings),
