@@ -93,7 +93,7 @@ class Foresight {
   Guide candidate_;               ///< a plan that has no rollout yet; no knots: none
   bool candidate_stuck_ = false;  ///< the arm would not reach the posture by the last candidate, though it hits nothing
   bool planned_retreat_from_persons_ = false;  ///< in the last search near persons
-  int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted whose rollout without it did not collide
+  int direct_in_a_row_ = 0;        ///< assessments since guide_ was adopted in which the law alone was safe (update())
   int self_motions_left_ = 0;      ///< searches for a self-motion alone, for the present guide or the law alone
   int unsuccessful_searches_ = 0;  ///< failures of plan_to_target() since the guide was changed or assessed as good
 };

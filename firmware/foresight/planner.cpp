@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/base/bounded_list.h"
 #include "firmware/foresight/inverse_kinematics.h"
 #include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
@@ -46,11 +47,6 @@ constexpr double kStayAtGoal_s = 1.0;
 constexpr double kStartAllowance_m = 0.005;
 constexpr double kStartPhase_s = 0.5;
 
-void predict(const NearbyObstacles& nearby, double after_s, NearbyObstacles& then) {
-  then.count = nearby.count;
-  for (int i = 0; i < nearby.count; ++i) then.obstacles[i] = predicted_obstacle(nearby.obstacles[i], after_s);
-}
-
 /// A position limit; half a turn where a joint has none. (A prismatic joint has one.)
 double bounded(double limit_rad, double otherwise_rad) {
   return std::isfinite(limit_rad) ? limit_rad : otherwise_rad;
@@ -90,14 +86,13 @@ void Planner::append(Guide& guide, const JointVector& q_rad) const {
 }
 
 /// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).
-bool Planner::is_clear(const Snapshot& from, const Guide& guide) {
+bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const ForesightSettings& settings = model_.settings.foresight;
   const double enough_m = settings.clearance_m;
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
-    predict(from.nearby, after_s, then_);
-    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), then_.obstacles.data(),
-                           then_.count, 0.0, enough_m);
+    return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
+                           from.nearby.count, after_s, enough_m, nullptr, kPersonCoast_s);
   };
   const bool retreats = guide.foresight_status == ForesightStatus::kWaiting;
   const double at_start_m =
@@ -124,7 +119,7 @@ bool Planner::ends_in_time(const Snapshot& from, const Guide& guide) const {
 }
 
 /// Replaces the best guide so far by one that ends before it, in time, and is clear.
-void Planner::take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) {
+void Planner::take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const {
   if (!ends_in_time(from, guide)) return;
   if (best.knots > 0 && guide.end_s() >= best.end_s()) return;
   if (is_clear(from, guide)) best = guide;
@@ -180,11 +175,12 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
-  NearbyObstacles in_the_end;
-  predict(from.nearby, model_.settings.foresight.horizon_s, in_the_end);
+  BoundedList<Obstacle, kMaxNearbyObstacles> in_the_end;
+  for (int i = 0; i < from.nearby.count; ++i)
+    in_the_end.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
   const auto proximity = [&](const JointVector& q_rad) {
     const LinkPoses poses = forward_kinematics(model_.arm, q_rad, others);
-    return person_proximity(poses, in_the_end.obstacles.data(), in_the_end.count);
+    return person_proximity(poses, in_the_end.begin(), in_the_end.size());
   };
   double least = proximity(from.arm.position_rad);
   Guide best;

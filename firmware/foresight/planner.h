@@ -48,15 +48,14 @@ class Planner {
   Guide start_of(const Snapshot& from, ForesightStatus status) const;
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
-  bool is_clear(const Snapshot& from, const Guide& guide);
+  bool is_clear(const Snapshot& from, const Guide& guide) const;
   bool ends_in_time(const Snapshot& from, const Guide& guide) const;
-  void take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best);
+  void take_if_sooner(const Snapshot& from, const Guide& guide, Guide& best) const;
   void append(Guide& guide, const JointVector& q_rad) const;
 
   const Model& model_;
   SplitMix64 random_;
   bool found_goal_ = false;
-  NearbyObstacles then_;  ///< of a snapshot, at some later time
 };
 
 }  // namespace sidestep

@@ -218,14 +218,12 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
     allowance_m.add(enough_m - required_clearance_m(enough_m, rest_clearance_m(), obstacle));
   }
   if (movers.size() == 0) return true;
-  auto then = movers;
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   for (int sample = 0; sample * kSampleEvery_s <= settings.horizon_s; ++sample) {
     const double after_s = sample * kSampleEvery_s;
     const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad, others);
-    std::transform(movers.begin(), movers.end(), then.begin(),
-                   [after_s](const Obstacle& mover) { return predicted_obstacle(mover, after_s); });
-    if (clearance_after(model_.arm, poses, then.begin(), then.size(), 0.0, enough_m, allowance_m.begin()) < enough_m)
+    if (clearance_after(model_.arm, poses, movers.begin(), movers.size(), after_s, enough_m, allowance_m.begin(),
+                        kPersonCoast_s) < enough_m)
       return false;
   }
   return true;

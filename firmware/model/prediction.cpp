@@ -71,7 +71,7 @@ double nearest_to_long_m(const Links& links, int last_body, const Obstacle& obst
 }  // namespace
 
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
-                       double enough_m, const double* allowance_m) {
+                       double enough_m, const double* allowance_m, double person_coast_s) {
   const Links links = moving_links(arm, poses);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
@@ -80,10 +80,11 @@ double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* o
     const int last_body = last_body_to_keep_clear(arm, poses, obstacle.id);
     if (last_body < 0) continue;
     const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
+    const double moves_s = obstacle.kind == Kind::kPerson ? std::min(after_s, person_coast_s) : after_s;
     const double found_m = capsule.is_sphere()
-                               ? nearest_to_sphere_m(links, last_body, capsule.start + obstacle.velocity_mps * after_s,
+                               ? nearest_to_sphere_m(links, last_body, capsule.start + obstacle.velocity_mps * moves_s,
                                                      capsule.radius_m, below_m)
-                               : nearest_to_long_m(links, last_body, extrapolated(obstacle, after_s), below_m);
+                               : nearest_to_long_m(links, last_body, extrapolated(obstacle, moves_s), below_m);
     if (found_m < below_m) least_m = found_m + allowed_m;
   }
   return least_m;
