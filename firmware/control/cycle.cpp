@@ -43,11 +43,21 @@ double turn_weight_m(double moving) {
   return 1.0 - (1.0 - kTurnWeight_m) * moving;
 }
 
-/// Factor of the shield's tool_weight: 10 where the pose moves, which leaves little time to catch up after an evasion.
-/// Tuned on the campaign's chase6d; for poses at rest a large weight led to contacts in dodge6d.
-double tool_weight_factor(const Target& target, double moving) {
-  constexpr double kMovingPose = 10.0;
-  return target.tracks_orientation ? 1.0 + (kMovingPose - 1.0) * moving : 1.0;
+/// How far the tool is from the target: 0 from comfort_near on, 1 from comfort_far on.
+double far_share(const ShieldSettings& shield, const LawInput& input) {
+  const double distance_m = (input.target.position_m - input.poses.tool_position).norm();
+  return std::clamp((distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m), 0.0, 1.0);
+}
+
+/// Share of the shield's tool_weight: all of it for a pose that moves and for a position near the tool. A tenth for a
+/// position far away, to which a detour costs little; for a full pose at rest, where all of it led to contacts in the
+/// campaign's dodge6d; for a posture; and while the arm makes room for a person, which it does with the tool as well.
+double tool_weight_share(const ShieldSettings& shield, const LawInput& input, Mode mode, bool separates) {
+  constexpr double kLeast = 0.1;
+  if (mode != Mode::kTrack || input.target.is_posture() || separates) return kLeast;
+  const double counts =
+      input.target.tracks_orientation ? moving_share(input.target, mode) : 1.0 - far_share(shield, input);
+  return kLeast + (1.0 - kLeast) * counts;
 }
 
 NominalCommand scaled(NominalCommand nominal, double scale) {
@@ -62,11 +72,10 @@ NominalCommand scaled(NominalCommand nominal, double scale) {
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
   const bool is_posture = mode == Mode::kTrack && input.target.is_posture();
   const double least = is_posture ? 1e-3 : shield.comfort_least_weight;
-  const double largest = is_posture ? shield.comfort_weight / std::max(1.0, shield.tool_weight) : shield.comfort_weight;
+  const double tool_weight = std::max(1.0, tool_weight_share(shield, input, mode, false) * shield.tool_weight);
+  const double largest = is_posture ? shield.comfort_weight / tool_weight : shield.comfort_weight;
   if (mode != Mode::kTrack || guided) return least;
-  const double distance_m = (input.target.position_m - input.poses.tool_position).norm();
-  const double share = (distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m);
-  return least + std::clamp(share, 0.0, 1.0) * (largest - least);
+  return least + far_share(shield, input) * (largest - least);
 }
 
 /// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion, the
@@ -77,22 +86,23 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
   const Mode mode = state.supervision.mode;
   const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
   if (!settings.shield.enabled || mode == Mode::kWait || faulty_rollout) return nominal_radps;
-  const double moving = moving_share(input.target, mode);
-  const ShieldInput shield_input{model.arm,
-                                 input.poses,
-                                 input.position_rad,
-                                 state.stream.velocity_radps,
-                                 input.clearance,
-                                 input.obstacles,
-                                 model.self_pairs,
-                                 state.evasion_radps,
-                                 settings.period_s(),
-                                 comfort,
-                                 mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
-                                 !moves(mode),
-                                 tool_weight_factor(input.target, moving)};
+  ShieldInput shield_input{model.arm,
+                           input.poses,
+                           input.position_rad,
+                           state.stream.velocity_radps,
+                           input.clearance,
+                           input.obstacles,
+                           model.self_pairs,
+                           state.evasion_radps,
+                           settings.period_s(),
+                           comfort,
+                           settings.shield.tool_weight,
+                           mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
+                           !moves(mode)};
+  shield_input.tool_weight *= tool_weight_share(settings.shield, input, mode, keeps_separation(shield_input));
+  const double turn_weight = turn_weight_m(moving_share(input.target, mode));
   const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
-                                   weighted_task(input.tool_jacobian, turn_weight_m(moving)), nominal_radps);
+                                   weighted_task(input.tool_jacobian, turn_weight), nominal_radps);
   if (safe.failed) report.limiting |= kLimitingShieldFailed;
   if (safe.links_limit) report.limiting |= kLimitingSelf;
   report.nearest_links = safe.nearest_links;

@@ -12,45 +12,36 @@ constexpr double kYoungest_s = 0.01, kOldest_s = 0.35;  // of an earlier report 
 constexpr double kRest_s = 0.4;
 constexpr double kRest_m = 0.02;
 constexpr double kRestDeviations = 7.0;  // of noise: so far apart are two reports once in ten thousand
-constexpr double kNoiseShare = 0.05;     // of a new deviation in the variance
+constexpr int kNoiseDeviations = 20;     // the variance is about the mean of so many
+constexpr int kLeastDeviations = 3;      // for fewer it is unknown
 constexpr double kFastest_mps = 8.0;     // a hand reaches 6 m/s
 constexpr double kNoise_m = 0.05;        // of a measured position
 
+constexpr double kLead_s = 0.2;
+constexpr double kLargestLead_mps = 0.5;
+constexpr double kLeadDeviations = 5.0;  // velocities by finite differences have noise that is correlated
+
 }  // namespace
 
-void MotionEstimator::Point::begin(const Report& now) {
-  earlier_.clear();
-  anchor_ = now;
-  moves_ = false;
-}
-
-/// Keeps the report if the newest one is old enough, and learns the noise: of the newest report, from its deviation
-/// from the line between its neighbours, whose variance per coordinate is noise^2 (1 + w^2 + (1 - w)^2).
-void MotionEstimator::Point::remember(const Report& now) {
+/// The noise of the newest report is learned from its deviation from the line between its neighbours, whose variance
+/// per coordinate is noise^2 (1 + w^2 + (1 - w)^2).
+void MotionEstimator::History::remember(const Report& now) {
   if (earlier_.size() > 0 && now.at_s - earlier_[0].at_s < kApart_s) return;
   if (earlier_.size() > 1) {
     const Report &middle = earlier_[0], &first = earlier_[1];
     const double w = (middle.at_s - first.at_s) / (now.at_s - first.at_s);
-    const Vector3 deviation_m = middle.at_m - (1.0 - w) * first.at_m - w * now.at_m;
-    const double variance_m2 = deviation_m.squaredNorm() / (3.0 * (1.0 + w * w + (1.0 - w) * (1.0 - w)));
-    noise2_m2_ += kNoiseShare * (variance_m2 - noise2_m2_);
+    const Vector3 deviation = middle.value - (1.0 - w) * first.value - w * now.value;
+    const double variance = deviation.squaredNorm() / (3.0 * (1.0 + w * w + (1.0 - w) * (1.0 - w)));
+    learned_ = std::min(learned_ + 1, kNoiseDeviations);
+    noise2_ += (variance - noise2_) / learned_;
   }
   if (!earlier_.is_full()) earlier_.add(now);
   std::move_backward(earlier_.begin(), earlier_.end() - 1, earlier_.end());
   earlier_[0] = now;
 }
 
-bool MotionEstimator::Point::rests(const Report& now) {
-  const double rest_m = std::max(kRest_m, kRestDeviations * std::sqrt(noise2_m2_));
-  const bool left = (now.at_m - anchor_.at_m).norm() > rest_m;
-  if (!left && now.at_s - anchor_.at_s <= kRest_s) return !moves_;
-  moves_ = left;
-  anchor_ = now;
-  return !moves_;
-}
-
-Vector3 MotionEstimator::Point::slope_mps(const Report& now) const {
-  Vector3 moment = Vector3::Zero(), mean_m = now.at_m;
+MotionEstimator::History::Slope MotionEstimator::History::slope(const Report& now) const {
+  Vector3 moment = Vector3::Zero(), mean = now.value;
   double mean_s = now.at_s, spread_s2 = 0.0;
   BoundedList<Report, 4> reports;
   reports.add(now);
@@ -58,37 +49,64 @@ Vector3 MotionEstimator::Point::slope_mps(const Report& now) const {
     const double age_s = now.at_s - report.at_s;
     if (age_s < kYoungest_s || age_s > kOldest_s) continue;
     reports.add(report);
-    mean_m += report.at_m;
+    mean += report.value;
     mean_s += report.at_s;
   }
-  mean_m /= reports.size();
+  mean /= reports.size();
   mean_s /= reports.size();
   for (const Report& report : reports) {
-    moment += (report.at_s - mean_s) * (report.at_m - mean_m);
+    moment += (report.at_s - mean_s) * (report.value - mean);
     spread_s2 += (report.at_s - mean_s) * (report.at_s - mean_s);
   }
-  return spread_s2 > 0.0 ? Vector3(moment / spread_s2) : Vector3(Vector3::Zero());
+  if (spread_s2 == 0.0) return {Vector3::Zero(), 0.0};
+  return {moment / spread_s2,
+          learned_ < kLeastDeviations ? std::numeric_limits<double>::infinity() : noise2_ / spread_s2};
 }
 
-Vector3 MotionEstimator::Point::velocity_mps(const Vector3& now_m, double now_s) {
-  const Report now{now_s, now_m};
-  const bool follows =
-      earlier_.size() > 0 && (now_m - earlier_[0].at_m).norm() <= kFastest_mps * (now_s - earlier_[0].at_s) + kNoise_m;
-  if (!follows) begin(now);
-  Vector3 velocity_mps = rests(now) ? Vector3(Vector3::Zero()) : slope_mps(now);
-  remember(now);
+bool MotionEstimator::Point::rests(const Report& now) {
+  const double rest_m = std::max(kRest_m, kRestDeviations * std::sqrt(positions_.noise2()));
+  const bool left = (now.value - anchor_.value).norm() > rest_m;
+  if (!left && now.at_s - anchor_.at_s <= kRest_s) return !moves_;
+  moves_ = left;
+  anchor_ = now;
+  return !moves_;
+}
+
+Vector3 MotionEstimator::Point::velocity_mps(const Report& now) {
+  began_ = positions_.is_empty() || (now.value - positions_.newest().value).norm() >
+                                        kFastest_mps * (now.at_s - positions_.newest().at_s) + kNoise_m;
+  if (began_) {
+    positions_.clear();
+    anchor_ = now;
+    moves_ = false;
+  }
+  Vector3 velocity_mps = rests(now) ? Vector3(Vector3::Zero()) : positions_.slope(now).per_s;
+  positions_.remember(now);
   return velocity_mps;
+}
+
+/// What the velocity is expected to change by within kLead_s, m/s.
+Vector3 MotionEstimator::lead_mps(const Report& velocity_mps, History& velocities) {
+  const auto [acceleration_mps2, variance] = velocities.slope(velocity_mps);
+  velocities.remember(velocity_mps);
+  const double by_noise2 = kLeadDeviations * kLeadDeviations * variance, squared = acceleration_mps2.squaredNorm();
+  if (squared <= by_noise2) return Vector3::Zero();
+  const Vector3 lead = kLead_s * (1.0 - by_noise2 / squared) * acceleration_mps2;
+  return lead * std::min(1.0, kLargestLead_mps / lead.norm());
 }
 
 void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
   const Capsule& capsule = obstacle.capsule;
-  const Vector3 velocity_mps = track.centre.velocity_mps(capsule.centre(), now_s);
+  const Vector3 velocity_mps = track.centre.velocity_mps({now_s, capsule.centre()});
   if (obstacle.velocity_mps.isZero(0.0)) obstacle.velocity_mps = velocity_mps;
+  if (track.centre.began()) track.velocities.clear();
+  const Vector3 lead = lead_mps({now_s, obstacle.velocity_mps}, track.velocities);
+  if (track.centre.moves() && obstacle.id > kNeighbourIds) obstacle.velocity_mps += lead;
   if (capsule.is_sphere()) return;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
   if (half_axis_m.dot(track.half_axis_m) < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order
   track.half_axis_m = half_axis_m;
-  const Vector3 tip_mps = track.axis.velocity_mps(half_axis_m, now_s);
+  const Vector3 tip_mps = track.axis.velocity_mps({now_s, half_axis_m});
   if (obstacle.angular_velocity_radps.isZero(0.0))
     obstacle.angular_velocity_radps = half_axis_m.cross(tip_mps) / half_axis_m.squaredNorm();
 }

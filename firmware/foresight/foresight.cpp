@@ -14,8 +14,8 @@ constexpr int kSearchesUntilWaiting = 50;
 constexpr int kSearchesAfterBad = 20;
 constexpr int kTrustedInARow = 4;
 
-// Among persons a retreat lasts until the law alone has been the better choice for a second.
-constexpr int kTrustedAmongPersons = 20;
+// Among persons a retreat lasts until the law alone has been the better choice for half a second.
+constexpr int kTrustedAmongPersons = 10;
 constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the arm looks for a retreat
 
 // So often a search looks for a self-motion alone, while the tool is in place and no collision is near.

@@ -45,7 +45,7 @@ class Foresight {
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with
-  /// plan_retreat_from_persons() first. Where persons are, a retreat is dropped only after 20 assessments in a row in
+  /// plan_retreat_from_persons() first. Where persons are, a retreat is dropped only after 10 assessments in a row in
   /// which the rollout without it neither collides nor costs as much.
   ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50

@@ -15,6 +15,8 @@ constexpr double kStep_s = 0.07;     // of a rollout; chosen by the success rate
 constexpr int kMaxSteps = 160;       // covers the longest pass_horizon, 10 s, and kAfter_s
 constexpr double kAfter_s = 0.2;     // of a rollout, after the last closest approach
 constexpr double kDeficitWeight_per_m = 1e4;
+constexpr double kDeficitPerToolWeight_m = 1000.0 / 6.0;  // less led to contacts in the campaign's real
+constexpr double kRounding_m = 1e-9;
 constexpr double kPreviousEvasionFactor = 0.8;
 constexpr double kNullSpaceDamping = 0.01;
 constexpr double kLeastDirection = 0.1;  // a shorter projection on the null space is mostly the damping's error
@@ -80,6 +82,14 @@ Rollout roll_out(const ShieldInput& input, const JointVector& velocity_radps, do
   return rollout;
 }
 
+/// Cost per metre of missing clearance. In proportion to the tool's weight, so that no weight keeps the tool in place
+/// until it is too late to evade; not for a full pose, of which the moving ones were then lost more often (chase6d).
+double deficit_weight_per_m(const QpObjective& objective) {
+  const bool is_full_pose = objective.tool_jacobian.rows() == 6;
+  return is_full_pose ? kDeficitWeight_per_m
+                      : std::max(kDeficitWeight_per_m, kDeficitPerToolWeight_m * objective.tool_weight);
+}
+
 /// Cost of a joint velocity: its distance from the wanted one, and the clearance deficit of its rollout.
 class RolloutCost {
  public:
@@ -89,6 +99,7 @@ class RolloutCost {
         input_(input),
         objective_(objective),
         wanted_radps_(wanted_radps),
+        deficit_weight_per_m_(deficit_weight_per_m(objective)),
         threats_(find_threats(settings, input.clearance, input.obstacles)),
         // A valid index: every rollout is kAfter_s longer than closest_s.
         worst_step_(static_cast<int>(threats_.closest_s / kStep_s)) {}
@@ -101,9 +112,16 @@ class RolloutCost {
         objective_.scale ? difference.cwiseQuotient(*objective_.scale).squaredNorm() : difference.squaredNorm();
     const double distance = 0.5 * (joints2 + objective_.tool_weight * tool);
     if (distance >= bound) return distance;
-    const double rounding_m = 1e-9;
-    const double most_m = (bound - distance) / kDeficitWeight_per_m + rounding_m;
-    return distance + kDeficitWeight_per_m * clearance_deficit_m(velocity_radps, most_m);
+    const double most_m = std::min((bound - distance) / deficit_weight_per_m_, largest_deficit_m_) + kRounding_m;
+    const double deficit_m = clearance_deficit_m(velocity_radps, most_m);
+    if (deficit_m >= most_m) return std::max(bound, distance);
+    return distance + deficit_weight_per_m_ * deficit_m;
+  }
+
+  /// Larger deficits than that of this velocity count as no solution from now on. Returns the deficit, m.
+  double limit_deficit(const JointVector& velocity_radps) {
+    largest_deficit_m_ = clearance_deficit_m(velocity_radps, std::numeric_limits<double>::infinity());
+    return largest_deficit_m_;
   }
 
   /// Whether the rollout comes to contact with an obstacle that needs no more than the hard clearance.
@@ -136,8 +154,10 @@ class RolloutCost {
   const ShieldInput& input_;
   const QpObjective& objective_;
   const JointVector& wanted_radps_;
+  const double deficit_weight_per_m_;
   const Threats threats_;
   int worst_step_;
+  double largest_deficit_m_ = std::numeric_limits<double>::infinity();
 };
 
 /// Indices of the pass rows whose obstacle can be passed on either side; of too many, those with the largest bounds.
@@ -169,15 +189,20 @@ ConstraintRows with_sides(const ConstraintRows& rows, const TwoSidedRows& two_si
   return changed;
 }
 
-/// Of the projections of the single joints on the null space of the tool's task, the longest one, n x 1.
-JointVector freest_direction(const TaskJacobian& jacobian) {
+/// The projections of the single joints on the null space of the tool's task, n x 1. Those on a null space of one
+/// dimension are parallel: the longest one is enough.
+BoundedList<JointVector, kMaxJoints> null_space_directions(const TaskJacobian& jacobian) {
   const Eigen::Index n = jacobian.cols();
-  JointVector longest = JointVector::Zero(n);
+  BoundedList<JointVector, kMaxJoints> directions;
   for (Eigen::Index joint = 0; joint < n; ++joint) {
     JointVector direction = -damped_solve(jacobian, kNullSpaceDamping, TaskVector(jacobian.col(joint)));
     direction[joint] += 1.0;
-    if (direction.squaredNorm() > longest.squaredNorm()) longest = direction;
+    if (direction.norm() > kLeastDirection) directions.add(direction);
   }
+  const auto less = [](const JointVector& a, const JointVector& b) { return a.squaredNorm() < b.squaredNorm(); };
+  if (n - jacobian.rows() > 1 || directions.size() == 0) return directions;
+  BoundedList<JointVector, kMaxJoints> longest;
+  longest.add(*std::max_element(directions.begin(), directions.end(), less));
   return longest;
 }
 
@@ -201,13 +226,10 @@ bool is_threatened(const ConstraintRows& rows) {
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps) {
   if (!is_threatened(rows)) return {planned_radps, false};
-  const auto& near = input.clearance.near;
-  const bool separates =
-      std::any_of(near.begin(), near.end(), [&](const NearPair& pair) { return keeps_separation(input, pair); });
   // Else the target, from which the separation keeps the arm away, would draw it back.
-  const JointVector& wanted_radps = separates ? planned_radps : objective.nominal_radps;
+  const JointVector& wanted_radps = keeps_separation(input) ? planned_radps : objective.nominal_radps;
   RolloutCost rollout_cost(settings, input, objective, wanted_radps);
-  if (rollout_cost.clearance_deficit_m(planned_radps, 0.0) <= 0.0) return {planned_radps, false};
+  if (rollout_cost.limit_deficit(planned_radps) <= 0.0) return {planned_radps, false};
   JointVector best = planned_radps;
   double best_cost = std::numeric_limits<double>::infinity();
   const auto consider = [&](const JointVector& candidate, double factor) {
@@ -230,10 +252,8 @@ Plan evade(const ShieldSettings& settings, const ShieldInput& input, const Const
       consider(single, 1.0);
     }
   }
-  const bool is_full_pose = objective.tool_jacobian.rows() == 6;
-  const JointVector direction = is_full_pose ? freest_direction(objective.tool_jacobian) : JointVector();
-  if (direction.norm() > kLeastDirection) {
-    const JointVector from = wanted_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
+  const JointVector from = wanted_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
+  for (const JointVector& direction : null_space_directions(objective.tool_jacobian)) {
     const double forward = largest_factor(range, from, direction), back = largest_factor(range, from, -direction);
     for (const double share : {1.0, 0.5, 0.25}) {
       consider(from + share * forward * direction, 1.0);

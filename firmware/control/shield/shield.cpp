@@ -8,8 +8,7 @@ ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, co
                     const VelocityRange& range, const TaskJacobian& tool_jacobian, const JointVector& nominal_radps) {
   const RowSets rows = make_rows(settings, input, sustainable, range, nominal_radps);
   const JointVector* scale = input.arm.prismatic.any() ? &input.arm.joint_scale : nullptr;
-  const double tool_weight = input.tool_weight_factor * settings.tool_weight;
-  const QpObjective to_nominal{nominal_radps, tool_jacobian, tool_weight, input.comfort_weight, scale};
+  const QpObjective to_nominal{nominal_radps, tool_jacobian, input.tool_weight, input.comfort_weight, scale};
   const QpSolution nearest = solve(rows.plan, sustainable, to_nominal);
   const Plan plan = evade(settings, input, rows.plan, sustainable, to_nominal, nearest.velocity_radps);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -20,15 +21,21 @@ struct ShieldInput {
   const std::vector<SelfPair>& self_pairs;
   const JointVector& evasion_radps;  ///< the evasion chosen in the previous cycle; size 0: none
   double period_s;
-  double comfort_weight;            ///< weight of the comfort tier in this cycle, s2/m2
-  double person_weight = 0.0;       ///< of the separation from persons in this cycle; 0: comfort as from anything else
-  bool is_stopping = false;         ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
-  double tool_weight_factor = 1.0;  ///< of ShieldSettings::tool_weight in this cycle
+  double comfort_weight;       ///< weight of the comfort tier in this cycle, s2/m2
+  double tool_weight;          ///< w in this cycle, 1/m2
+  double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
+  bool is_stopping = false;    ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
 };
 
 /// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
 inline bool keeps_separation(const ShieldInput& input, const NearPair& pair) {
   return input.person_weight > 0.0 && input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson;
+}
+
+/// Whether a link keeps separation from any person.
+inline bool keeps_separation(const ShieldInput& input) {
+  const auto& near = input.clearance.near;
+  return std::any_of(near.begin(), near.end(), [&](const NearPair& pair) { return keeps_separation(input, pair); });
 }
 
 /// The result of the first programme: the joint velocity that the arm is to reach, before acceleration limits, and
@@ -64,7 +71,7 @@ struct ShieldResult {
 ///   u        nominal joint velocity, n x 1, rad/s (prismatic joints: m/s)
 ///   S        diag(Arm::joint_scale): 0.25 m/s of a prismatic joint weigh as much as 1 rad/s
 ///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m
-///   w        ShieldSettings::tool_weight times tool_weight_factor, 1/m2: this term makes the arm avoid obstacles in
+///   w        ShieldInput::tool_weight, 1/m2: this term makes the arm avoid obstacles in
 ///            the null space of the tool's task where that is possible
 ///   a_i      1 x n: rate at which the distance of pair i grows with q';  b_i: least such rate, m/s
 ///   sigma_t  slack scale of tier t, m/s: a violation s costs 1/2 (s / sigma_t)^2. hard 1e-3, pass 3e-2,

@@ -60,8 +60,9 @@ struct ShieldSettings {
   double person_clearance_m = 0.6;    ///< separation: preferred distance from a person in TRACK, also at the target
   double person_gain_per_s = 2.0;     ///< approach speed per metre above person_clearance_m
   double person_weight = 1000.0;      ///< s2/m2; of the speed that is missing
-  /// w of the programme, 1/m2: cost of tool velocity error relative to joint velocity error; times 10 for a moving pose
-  double tool_weight = 60.0;
+  /// w of the programme, 1/m2: cost of tool velocity error relative to joint velocity error; less far from the target
+  /// (cycle.cpp)
+  double tool_weight = 600.0;
   double self_clearance_m = 0.02;  ///< between two links, at most (load/self_pairs.h)
   double range_m = 0.4;            ///< pairs farther apart, now and within pass_horizon_s, are ignored
 };

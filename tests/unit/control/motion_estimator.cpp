@@ -111,7 +111,7 @@ void the_velocity_of_a_noisy_obstacle_is_right_on_average_and_its_error_is_bound
   check_near(std::sqrt(error2 / count), 0.134 * std::sqrt(3.0), 0.03);
 }
 
-void a_reported_velocity_is_not_changed(void**) {
+void a_constant_reported_velocity_is_not_changed(void**) {
   Scene scene;
   for (int k = 0; k < 20; ++k) {
     Obstacle reported = limb(Vector3(0.02 * k, 0, 0), Vector3(0, 0, 0.2));
@@ -120,6 +120,52 @@ void a_reported_velocity_is_not_changed(void**) {
     const Obstacle& last = scene.send({reported}, 0.02);
     check_near(last.velocity_mps, reported.velocity_mps, 0.0);
     check_near(last.angular_velocity_radps, reported.angular_velocity_radps, 0.0);
+  }
+}
+
+void a_reported_velocity_that_changes_is_led_by_its_change_in_a_fifth_of_a_second(void**) {
+  Random random(6);
+  constexpr double kLead_s = 0.2, kLargest_mps = 0.5;
+  for (const double rate_hz : {30.0, 60.0, 100.0, 200.0}) {
+    for (const double size_mps2 : {0.5, 2.0, 10.0}) {
+      Scene scene;
+      const Vector3 start_mps = random.inside(-0.3, 0.3), acceleration_mps2 = size_mps2 * random.direction();
+      Vector3 lead = Vector3::Zero();
+      for (int k = 0; k < 0.5 * rate_hz; ++k) {
+        const double t_s = k / rate_hz;
+        Obstacle reported = ball(1, t_s * start_mps + 0.5 * t_s * t_s * acceleration_mps2);
+        reported.velocity_mps = start_mps + t_s * acceleration_mps2;
+        lead = scene.send({reported}, 1.0 / rate_hz).velocity_mps - reported.velocity_mps;
+      }
+      check_near(lead, std::min(kLead_s, kLargest_mps / size_mps2) * acceleration_mps2, 1e-6);
+    }
+  }
+}
+
+/// A camera's: finite differences of noisy positions over 0.1 s.
+void noise_of_a_reported_velocity_leads_it_seldom(void**) {
+  Random random(7);
+  for (const double deviation_m : {0.005, 0.01}) {
+    double lead2 = 0.0, error2 = 0.0;
+    int led = 0, count = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+      Scene scene;
+      std::vector<Vector3> positions_m;
+      for (int k = 0; k < 300; ++k) {
+        positions_m.push_back(k / 30.0 * Vector3(0.5, 0, 0) + noise(random, deviation_m));
+        if (k < 3) continue;
+        Obstacle reported = ball(1, positions_m.back());
+        reported.velocity_mps = (positions_m[k] - positions_m[k - 3]) / 0.1;
+        const Vector3 lead = scene.send({reported}, 1.0 / 30.0).velocity_mps - reported.velocity_mps;
+        lead2 += lead.squaredNorm();
+        error2 += (reported.velocity_mps - Vector3(0.5, 0, 0)).squaredNorm();
+        led += !lead.isZero(0.0);
+        ++count;
+      }
+    }
+    check(led < 0.01 * count, "%g m: %d of %d velocities are led", deviation_m, led, count);
+    check(lead2 < 0.01 * error2, "%g m: lead %g m/s, noise %g m/s", deviation_m, std::sqrt(lead2 / count),
+          std::sqrt(error2 / count));
   }
 }
 
@@ -193,7 +239,9 @@ int main() {
       cmocka_unit_test(a_limb_that_turns_without_an_angular_velocity_gets_its_own_whatever_the_order_of_its_ends),
       cmocka_unit_test(noise_does_not_move_an_obstacle_at_rest),
       cmocka_unit_test(the_velocity_of_a_noisy_obstacle_is_right_on_average_and_its_error_is_bounded),
-      cmocka_unit_test(a_reported_velocity_is_not_changed),
+      cmocka_unit_test(a_constant_reported_velocity_is_not_changed),
+      cmocka_unit_test(a_reported_velocity_that_changes_is_led_by_its_change_in_a_fifth_of_a_second),
+      cmocka_unit_test(noise_of_a_reported_velocity_leads_it_seldom),
       cmocka_unit_test(an_obstacle_that_stops_rests),
       cmocka_unit_test(another_obstacle_under_the_same_id_begins_anew),
       cmocka_unit_test(obstacles_are_matched_by_id_and_those_of_one_id_by_their_order),

@@ -46,8 +46,8 @@ struct Scene {
   void add(const Obstacle& obstacle) { set->obstacles[static_cast<size_t>(set->count++)] = obstacle; }
   RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
-    const ShieldInput now{lwa3(),     poses,      q_rad, last_radps, clearance,    view,
-                          self_pairs, last_radps, 0.01,  1.0,        person_weight};
+    const ShieldInput now{lwa3(),     poses,      q_rad, last_radps, clearance, view,
+                          self_pairs, last_radps, 0.01,  1.0,        0.0,       person_weight};
     return make_rows(kSettings, now, sustainable, range, nominal_radps);
   }
   ConstraintRows rows(const VelocityRange& range, bool hard_only = false) const {

@@ -49,8 +49,17 @@ struct Scene {
     range = velocity_range(model().arm.limits, q_rad, q_rad, last_radps, kPeriod_s);
   }
   ShieldInput input() const {
-    return {model().arm,        poses,         q_rad,     last_radps,    clearance, view,
-            model().self_pairs, evasion_radps, kPeriod_s, comfort_weight};
+    return {model().arm,
+            poses,
+            q_rad,
+            last_radps,
+            clearance,
+            view,
+            model().self_pairs,
+            evasion_radps,
+            kPeriod_s,
+            comfort_weight,
+            model().settings.shield.tool_weight};
   }
   ShieldResult shielded() const {
     return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);
@@ -299,7 +308,7 @@ void an_arm_driven_toward_a_static_obstacle_stops_before_it(void**) {
   const double clearance_m = model().settings.shield.rest_clearance_m;
   Random random(4);
   int stopped = 0;
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < 300; ++trial) {
     Scene scene{random.configuration(model().arm, 0.9), JointVector::Zero(7), JointVector::Zero(7), empty_set()};
     scene.measure();
     const Vector3 centre = on_the_arm(scene.poses, random) + random.direction() * random.uniform(0.2, 0.5);
