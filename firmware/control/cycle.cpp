@@ -49,15 +49,16 @@ double far_share(const ShieldSettings& shield, const LawInput& input) {
   return std::clamp((distance_m - shield.comfort_near_m) / (shield.comfort_far_m - shield.comfort_near_m), 0.0, 1.0);
 }
 
+constexpr double kLeastToolShare = 0.1;  // of tool_weight
+
 /// Share of the shield's tool_weight: all of it for a pose that moves and for a position near the tool. A tenth for a
 /// position far away, to which a detour costs little; for a full pose at rest, where all of it led to contacts in the
 /// campaign's dodge6d; for a posture; and while the arm makes room for a person, which it does with the tool as well.
 double tool_weight_share(const ShieldSettings& shield, const LawInput& input, Mode mode, bool separates) {
-  constexpr double kLeast = 0.1;
-  if (mode != Mode::kTrack || input.target.is_posture() || separates) return kLeast;
+  if (mode != Mode::kTrack || input.target.is_posture() || separates) return kLeastToolShare;
   const double counts =
       input.target.tracks_orientation ? moving_share(input.target, mode) : 1.0 - far_share(shield, input);
-  return kLeast + (1.0 - kLeast) * counts;
+  return kLeastToolShare + (1.0 - kLeastToolShare) * counts;
 }
 
 NominalCommand scaled(NominalCommand nominal, double scale) {
@@ -72,8 +73,8 @@ NominalCommand scaled(NominalCommand nominal, double scale) {
 double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode mode, bool guided) {
   const bool is_posture = mode == Mode::kTrack && input.target.is_posture();
   const double least = is_posture ? 1e-3 : shield.comfort_least_weight;
-  const double tool_weight = std::max(1.0, tool_weight_share(shield, input, mode, false) * shield.tool_weight);
-  const double largest = is_posture ? shield.comfort_weight / tool_weight : shield.comfort_weight;
+  const double divisor = is_posture ? std::max(1.0, kLeastToolShare * shield.tool_weight) : 1.0;
+  const double largest = shield.comfort_weight / divisor;
   if (mode != Mode::kTrack || guided) return least;
   return least + far_share(shield, input) * (largest - least);
 }
