@@ -12,7 +12,8 @@ namespace {
 // Tuned on the campaign's follow6d.
 constexpr double kFullPosePosture = 4.0;
 constexpr double kFullPoseDamping = 0.4;  // of the weighted task, whose singular values are smaller
-constexpr double kLeastDamping = 1e-3;    // where joints are at their bounds: the others may be too few for the task
+constexpr double kLeastDamping = 5e-4;    // where joints are at their bounds: the others may be too few for the task
+constexpr double kTurnAtBounds = 0.5;     // there a turn weighs so much less than kTurnWeight_m
 
 /// v scaled down to a largest norm.
 Vector3 clipped(const Vector3& v, double largest) {
@@ -44,6 +45,8 @@ void follow(const SidestepGains& gains, const LawInput& input, const TaskVector&
   if constexpr (rows == 6) {
     const VelocityRange& range = input.sustainable;
     if (is_within(nominal.velocity_radps, range)) return;
+    scaled.template bottomRows<3>() *= kTurnAtBounds;
+    rest.template tail<3>() *= kTurnAtBounds;
     const JointVector within = bounded_least_squares(scaled, rest, std::max(nominal.damping, kLeastDamping),
                                                      (range.lower_radps - preferred_radps).cwiseQuotient(joint_scale),
                                                      (range.upper_radps - preferred_radps).cwiseQuotient(joint_scale));
@@ -56,13 +59,15 @@ void follow(const SidestepGains& gains, const LawInput& input, const TaskVector&
 JointVector away_from_limits(const SidestepGains& gains, const LawInput& input) {
   const JointVector& q_rad = input.position_rad;
   const JointLimits& limits = input.arm.limits;
-  const double gain_radps = gains.k_posture_per_s * (input.tool_jacobian.rows() == 6 ? kFullPosePosture : 1.0);
+  const bool is_full_pose = input.tool_jacobian.rows() == 6;
+  const double gain_radps = gains.k_posture_per_s * (is_full_pose ? kFullPosePosture : 1.0);
   JointVector away_radps(q_rad.size());
   for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
     const double middle = 0.5 * (limits.lower_rad[i] + limits.upper_rad[i]);
     const double half = 0.5 * (limits.upper_rad[i] - limits.lower_rad[i]);
     const double share = std::isfinite(half) ? (q_rad[i] - middle) / half : 0.0;
-    away_radps[i] = -gain_radps * input.arm.joint_scale[i] * share * share * share;
+    const double power = is_full_pose ? std::abs(share) : share * share;  // then joints return earlier
+    away_radps[i] = -gain_radps * input.arm.joint_scale[i] * power * share;
   }
   return away_radps;
 }

@@ -20,6 +20,7 @@ constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the 
 
 // So often a search looks for a self-motion alone, while the tool is in place and no collision is near.
 constexpr int kSelfMotionSearches = 20;
+constexpr int kLooseSelfMotionSearches = 10;  // the last ones: the tool may leave its place by some centimetres
 constexpr double kInPlace_m = 0.1;
 constexpr double kNearCollision_s = 3.0;
 
@@ -109,8 +110,8 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   goal_.examined(blocked);
   if (blocked) return {};
   if (prefers_self_motion(now)) {
-    --self_motions_left_;
-    Guide guide = planner_.plan_self_motion(now);
+    const bool strictly = --self_motions_left_ >= kLooseSelfMotionSearches;
+    Guide guide = planner_.plan_self_motion(now, strictly);
     goal_.searched(planner_.found_goal());
     return guide;
   }

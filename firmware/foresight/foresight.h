@@ -40,8 +40,8 @@ class Foresight {
   /// the shield refuses, and to a posture they are all nearly the same.
   ///
   /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 20
-  /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone: the arm
-  /// changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
+  /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone, the first 10
+  /// strictly: the arm changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "firmware/base/bounded_list.h"
 #include "firmware/foresight/inverse_kinematics.h"
@@ -16,7 +18,7 @@ namespace {
 
 // All constants are tuned on the witnessed campaign.
 constexpr int kTriesPerCall = 6;
-constexpr int kSelfMotionTriesPerCall = 12;  // most end before they are checked against obstacles
+constexpr int kSelfMotionTriesPerCall = 40;  // most end before they are checked against obstacles
 constexpr int kRetreatTriesPerCall = 100;  // a retreat needs no inverse kinematics and mostly fails at an early sample
 constexpr double kSampleEvery_s = 0.06;
 constexpr double kLimitShare = 0.9;  // of the velocity and acceleration limits; the rest is left to the shield
@@ -39,6 +41,13 @@ constexpr double kDetour_rad = 1.5;
 constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
 constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
+
+// Self-motions keep the tool in place, strictly or nearly so. So many seconds longer may one take that keeps the tool
+// nearer by 0.1 m for 1 s.
+constexpr double kStrictDamping = 0.01;
+constexpr double kDampings[] = {kStrictDamping, 0.1, 0.2, 0.4};
+constexpr double kAwayCost = 20.0;
+constexpr double kAway_m = 0.1;
 
 // A guide ends so much before the horizon, so that the clearance at its end is known for as long.
 constexpr double kStayAtGoal_s = 1.0;
@@ -144,20 +153,39 @@ Guide Planner::plan_to_target(const Snapshot& from) {
   return best;
 }
 
-Guide Planner::plan_self_motion(const Snapshot& from) {
+/// The duration of the guide, and the distance of the tool from the target at rest.
+double Planner::cost_of_self_motion_s(const Snapshot& from, const Guide& guide) const {
+  double cost_s = guide.end_s() - from.now_s, at_s = from.now_s;
+  while (at_s < guide.end_s()) {
+    const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, at_s).position_rad);
+    const double away_m = (poses.tool_position - from.target.position_m).norm();
+    cost_s += kAwayCost * kSampleEvery_s * std::min(1.0, away_m / kAway_m);
+    at_s += kSampleEvery_s;
+  }
+  return cost_s;
+}
+
+Guide Planner::plan_self_motion(const Snapshot& from, bool strictly) {
   Target place = from.target;
   place.tracks_orientation = false;
   found_goal_ = false;
   Guide best;
+  double least_s = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < kSelfMotionTriesPerCall; ++attempt) {
-    SelfMotion motion(model_.arm, from.arm.position_rad);
-    JointVector q_rad;
+    const double damping = strictly ? kStrictDamping : kDampings[attempt % std::size(kDampings)];
+    SelfMotion motion(model_.arm, from.arm.position_rad, place.position_m, damping);
+    JointVector goal_rad;
     const bool detours = random_.uniform(0.0, 1.0) < kDetourShare;
-    if (detours && !(find_goal(from, place, q_rad) && motion.add_leg(q_rad))) continue;
-    if (!find_goal(from, from.target, q_rad)) continue;
+    if (detours && !(find_goal(from, place, goal_rad) && motion.reach(goal_rad))) continue;
+    if (!find_goal(from, from.target, goal_rad)) continue;
     found_goal_ = true;
-    if (!motion.add_leg(q_rad)) continue;
-    take_if_sooner(from, motion.guide(from.now_s, kLimitShare), best);
+    if (!motion.reach(goal_rad)) continue;
+    const Guide guide = motion.guide(from.now_s, kLimitShare);
+    if (!ends_in_time(from, guide)) continue;
+    const double cost_s = cost_of_self_motion_s(from, guide);
+    if (cost_s >= least_s || !is_clear(from, guide)) continue;
+    best = guide;
+    least_s = cost_s;
   }
   return best;
 }

@@ -28,9 +28,10 @@ constexpr double kSameOrientation_rad = 0.03;
 
 constexpr double kNoArrivalCost_s = 5.0;
 
-// An arm that follows a moving pose a little late is not to be led elsewhere. Tuned on the campaign's follow6d; for
-// moving positions (chase) it brought nothing.
+// An arm that follows a moving pose a little late is not to be led elsewhere, and at a pose at rest it had better turn
+// with the tool in place. Tuned on the campaign's follow6d; for moving positions (chase) it brought nothing.
 constexpr double kAway_m = 0.1;
+constexpr double kNotTurned = 0.5;  // what counts at a pose at rest where only the orientation is missing
 
 // A rollout is coarse: below this share of the hard clearance a contact is assumed possible.
 constexpr double kCollisionShare = 0.5;
@@ -42,7 +43,9 @@ constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 
 /// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
 double away_share(const LinkPoses& poses, const Target& target, bool moves) {
-  return moves ? std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m) : 1.0;
+  if (!target.tracks_orientation) return 1.0;
+  const double share = std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m);
+  return moves ? share : kNotTurned + (1.0 - kNotTurned) * share;
 }
 
 /// By dt_s, to after_s from the beginning; as predicted_obstacle().

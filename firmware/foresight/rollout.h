@@ -20,7 +20,8 @@ struct Forecast {
   bool collides = false;  ///< the clearance falls below half of what is needed (in HOLD below 1.5 times)
   double collision_s = std::numeric_limits<double>::infinity();  ///< time of the first collision after the snapshot
   double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
-                        ///< The first two count in full from 0.1 m on if the target is a moving pose, less below
+                        ///< The first two count in full from 0.1 m on if the target is a pose, less below: nothing
+                        ///< at the position of one that moves, half at that of one at rest
   double proximity_s = 0.0;  ///< the further part of cost_s for the nearness of persons at the end, in TRACK:
                              ///< kProximityCost_s person_proximity(); 0 if shield.person_weight is 0
 

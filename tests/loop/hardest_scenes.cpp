@@ -73,7 +73,7 @@ void an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place(void*
     check(metrics.final_error_m < kArrived_m, "%s:%lu: %g m", scene.family, scene.seed, metrics.final_error_m);
     check(metrics.clearance_m > 0.0, "%s:%lu: %g m", scene.family, scene.seed, metrics.clearance_m);
   }
-  for (const SceneName& scene : {SceneName{"follow6d", 1000029}, {"follow6d", 3000219}}) {
+  for (const SceneName& scene : {SceneName{"follow6d", 3000219}, {"follow6d", 13000229}, {"follow6d", 15000488}}) {
     const TrialMetrics metrics = run_scene(scene, true);
     check(metrics.error_max_m < 0.03, "%s:%lu: %g m", scene.family, scene.seed, metrics.error_max_m);
   }

@@ -119,6 +119,28 @@ void a_rollout_with_a_clear_path_arrives_at_the_cost_of_the_time_it_takes(void**
   check(std::abs(forecast.cost_s - arrival_s) < 0.15, "%g s, and %g s in the loop", forecast.cost_s, arrival_s);
 }
 
+/// Only the tool's orientation is missing; it costs half of the time that the turn takes.
+void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
+  ClosedLoop loop = test::at_home("sidestep");
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  loop.target.position_m = poses.tool_position;
+  loop.target.orientation = Quaternion(poses.tool_rotation);
+  loop.target.tracks_orientation = true;
+  loop.sends_target = true;
+  loop.run(2.0);
+  loop.target.orientation = Quaternion(Eigen::AngleAxisd(1.0, Vector3::UnitZ())) * loop.target.orientation;
+  const Forecast forecast = forecast_of(loop);
+  assert_true(forecast.arrives);
+  double turn_s = 0.0;
+  while (!is_at(forward_kinematics(loop.model.arm, loop.arm.position_rad), loop.target) && turn_s < 6.0) {
+    loop.cycle();
+    turn_s += loop.model.settings.period_s();
+  }
+  assert_true(turn_s > 0.4);
+  check(forecast.cost_s > 0.4 * turn_s && forecast.cost_s < 0.7 * turn_s, "%g s, and %g s in the loop", forecast.cost_s,
+        turn_s);
+}
+
 /// With spheres that cross the arm's way and make it evade. At another period than the controller's a forecast is 1e-3
 /// rad off after 0.1 s, and soon takes another side.
 void the_near_future_is_forecast_as_it_comes(void**) {
@@ -250,6 +272,7 @@ int main() {
       cmocka_unit_test(a_rollout_meets_an_obstacle_that_comes_too_fast),
       cmocka_unit_test(a_rollout_does_not_meet_a_person_who_is_far_away),
       cmocka_unit_test(in_track_the_nearness_of_persons_costs_unless_their_separation_is_off),
+      cmocka_unit_test(at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half),
       cmocka_unit_test(an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing),
       cmocka_unit_test(an_arm_at_rest_still_expects_an_obstacle_that_comes_late),
       cmocka_unit_test(a_collision_is_judged_by_the_hard_clearance_of_the_settings),
