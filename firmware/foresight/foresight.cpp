@@ -144,7 +144,7 @@ void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
 void Foresight::search_faster(const Snapshot& now) {
   if (candidate_.knots > 0) return evaluate_candidate(now, kClearlyEarlier_s);
   candidate_ = tree_planner_.plan_under_way(now, model_.settings.sidestep.v_max_mps);
-  if (candidate_.end_s() > now.now_s + expected_.cost_s - kClearlyEarlier_s) candidate_ = Guide{};
+  if (candidate_.end_s() > now.now_s + expected_.away_s - kClearlyEarlier_s) candidate_ = Guide{};
 }
 
 /// In every other search an arm that persons keep from its target looks for a configuration farther away from them.

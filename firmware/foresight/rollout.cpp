@@ -176,14 +176,15 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(model_.arm, arm.position_rad, target)
                                                               : is_at(poses, target));
     away = away_share(poses, target, is_moving_pose(from.target));
-    if (!forecast.arrives) forecast.cost_s += away * period_s;
+    const auto stay_away = [&](double for_s) { forecast.away_s += for_s, forecast.cost_s += away * for_s; };
+    if (!forecast.arrives) stay_away(period_s);
     least_m = std::min(least_m, clearance_after(model_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, enough_m, allowance_m.data()));
     if (least_m < enough_m && !forecast.collides) forecast.collision_s = after_s;
     forecast.collides = least_m < enough_m;
     if (after_s <= kForecastPath_s && !forecast.path_rad.is_full()) forecast.path_rad.add(arm.position_rad);
     if (stays_at_rest(from, guide, poses, arm, after_s, forecast.arrives)) {
-      if (!forecast.arrives) forecast.cost_s += away * std::max(0.0, horizon_s - after_s);
+      if (!forecast.arrives) stay_away(std::max(0.0, horizon_s - after_s));
       break;
     }
   }

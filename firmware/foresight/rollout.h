@@ -19,6 +19,7 @@ struct Forecast {
   bool arrives = false;   ///< the tool is at the target, or the arm in the posture, at the end; always true in HOLD
   bool collides = false;  ///< the clearance falls below half of what is needed (in HOLD below 1.5 times)
   double collision_s = std::numeric_limits<double>::infinity();  ///< time of the first collision after the snapshot
+  double away_s = 0.0;                                           ///< time not at the target, in full
   double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
                         ///< The first two count in full from 0.1 m on if the target is a pose, less below: nothing
                         ///< at the position of one that moves, half at that of one at rest
