@@ -47,7 +47,6 @@ constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as th
 constexpr double kStrictDamping = 0.01;
 constexpr double kDampings[] = {kStrictDamping, 0.1, 0.2, 0.4};
 constexpr double kAwayCost = 20.0;
-constexpr double kAway_m = 0.1;
 
 // A guide ends so much before the horizon, so that the clearance at its end is known for as long.
 constexpr double kStayAtGoal_s = 1.0;
@@ -153,13 +152,12 @@ Guide Planner::plan_to_target(const Snapshot& from) {
   return best;
 }
 
-/// The duration of the guide, and the distance of the tool from the target at rest.
+/// The duration of the guide, and kAwayCost times the time that the tool is away from the target at rest.
 double Planner::cost_of_self_motion_s(const Snapshot& from, const Guide& guide) const {
   double cost_s = guide.end_s() - from.now_s, at_s = from.now_s;
   while (at_s < guide.end_s()) {
     const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, at_s).position_rad);
-    const double away_m = (poses.tool_position - from.target.position_m).norm();
-    cost_s += kAwayCost * kSampleEvery_s * std::min(1.0, away_m / kAway_m);
+    cost_s += kAwayCost * kSampleEvery_s * distance_share(poses, from.target);
     at_s += kSampleEvery_s;
   }
   return cost_s;

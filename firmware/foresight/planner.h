@@ -27,8 +27,9 @@ class Planner {
   Guide plan_to_target(const Snapshot& from);
 
   /// For a target at rest that has the tool in place, or nearly so: the same in 40 tries, with guides along which the
-  /// tool stays there (self_motion.h), strictly, or in some more strictly than in others. Returns the clear one with
-  /// the least sum of its duration and 20 times the time that the tool is away, which counts in full from 0.1 m on.
+  /// tool stays there (self_motion.h), strictly, or in some more strictly than in others, and in 30 % of the tries
+  /// by way of another configuration that has the tool there. Returns the clear one with the least sum of its duration
+  /// and 20 times the time that the tool is away, which counts in full from 0.1 m on.
   Guide plan_self_motion(const Snapshot& from, bool strictly);
 
   /// Whether the last plan_to_target() or plan_self_motion() found a goal configuration, clear or not.

@@ -28,8 +28,9 @@ constexpr double kSameOrientation_rad = 0.03;
 
 constexpr double kNoArrivalCost_s = 5.0;
 
-// An arm that follows a moving pose a little late is not to be led elsewhere, and at a pose at rest it had better turn
-// with the tool in place. Tuned on the campaign's follow6d; for moving positions (chase) it brought nothing.
+// A tool farther away than kAway_m counts as away in full. An arm that follows a moving pose a little late is not to be
+// led elsewhere, and at a pose at rest it had better turn with the tool in place. Tuned on the campaign's follow6d; for
+// moving positions (chase) it brought nothing.
 constexpr double kAway_m = 0.1;
 constexpr double kNotTurned = 0.5;  // what counts at a pose at rest where only the orientation is missing
 
@@ -44,7 +45,7 @@ constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 /// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
 double away_share(const LinkPoses& poses, const Target& target, bool moves) {
   if (!target.tracks_orientation) return 1.0;
-  const double share = std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m);
+  const double share = distance_share(poses, target);
   return moves ? share : kNotTurned + (1.0 - kNotTurned) * share;
 }
 
@@ -80,6 +81,10 @@ bool is_at_rest(const Target& target) {
 
 bool is_moving_pose(const Target& target) {
   return target.tracks_orientation && !is_at_rest(target);
+}
+
+double distance_share(const LinkPoses& poses, const Target& target) {
+  return std::min(1.0, (target.position_m - poses.tool_position).norm() / kAway_m);
 }
 
 bool is_at(const LinkPoses& poses, const Target& target) {
@@ -176,7 +181,10 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
     forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(model_.arm, arm.position_rad, target)
                                                               : is_at(poses, target));
     away = away_share(poses, target, is_moving_pose(from.target));
-    const auto stay_away = [&](double for_s) { forecast.away_s += for_s, forecast.cost_s += away * for_s; };
+    const auto stay_away = [&](double for_s) {
+      forecast.away_s += for_s;
+      forecast.cost_s += away * for_s;
+    };
     if (!forecast.arrives) stay_away(period_s);
     least_m = std::min(least_m, clearance_after(model_.arm, poses, obstacles_.obstacles.data(), obstacles_.count,
                                                 period_s, enough_m, allowance_m.data()));

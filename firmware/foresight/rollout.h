@@ -76,6 +76,9 @@ bool is_at_rest(const Target& target);
 /// Whether the target has an orientation and a velocity.
 bool is_moving_pose(const Target& target);
 
+/// How far the tool is from the target's position: 0 there, 1 from 0.1 m on.
+double distance_share(const LinkPoses& poses, const Target& target);
+
 /// Whether the tool is within 10 mm of the target and, where the target tracks orientation, within 0.05 rad.
 bool is_at(const LinkPoses& poses, const Target& target);
 
