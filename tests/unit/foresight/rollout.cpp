@@ -141,6 +141,23 @@ void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
         turn_s);
 }
 
+/// The tool is 0.2 rad from a pose: at most 0.4 of what counts where the pose is to be reached.
+void at_a_pose_that_was_followed_a_small_turn_that_is_missing_costs_little(void**) {
+  ClosedLoop loop = test::at_home("sidestep");
+  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+  loop.target.position_m = poses.tool_position;
+  loop.target.orientation = Quaternion(poses.tool_rotation);
+  loop.target.tracks_orientation = true;
+  loop.sends_target = true;
+  loop.run(2.0);
+  loop.target.orientation = Quaternion(Eigen::AngleAxisd(0.2, Vector3::UnitZ())) * loop.target.orientation;
+  const auto rollout = std::make_unique<Rollout>(loop.model);
+  const auto snapshot = snapshot_of(loop);
+  const double reached_s = rollout->run(*snapshot, Guide{}).cost_s;
+  const double followed_s = rollout->run(*snapshot, Guide{}, true).cost_s;
+  check(followed_s > 0.0 && followed_s < 0.45 * reached_s, "%g and %g s", followed_s, reached_s);
+}
+
 /// With spheres that cross the arm's way and make it evade. At another period than the controller's a forecast is 1e-3
 /// rad off after 0.1 s, and soon takes another side.
 void the_near_future_is_forecast_as_it_comes(void**) {
@@ -273,6 +290,7 @@ int main() {
       cmocka_unit_test(a_rollout_does_not_meet_a_person_who_is_far_away),
       cmocka_unit_test(in_track_the_nearness_of_persons_costs_unless_their_separation_is_off),
       cmocka_unit_test(at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half),
+      cmocka_unit_test(at_a_pose_that_was_followed_a_small_turn_that_is_missing_costs_little),
       cmocka_unit_test(an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing),
       cmocka_unit_test(an_arm_at_rest_still_expects_an_obstacle_that_comes_late),
       cmocka_unit_test(a_collision_is_judged_by_the_hard_clearance_of_the_settings),
