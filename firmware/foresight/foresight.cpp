@@ -21,7 +21,6 @@ constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the 
 // So often a search looks for a self-motion alone, while the tool is in place and no collision is near.
 constexpr int kSelfMotionSearches = 20;
 constexpr int kLooseSelfMotionSearches = 10;  // the last ones: the tool may leave its place by some centimetres
-constexpr double kInPlace_m = 0.1;
 constexpr double kNearCollision_s = 3.0;
 
 // Where everything rests, forecasts are exact enough for a smaller difference. Later than this an arm is well under
@@ -44,8 +43,7 @@ bool is_good(const Snapshot& now, const Forecast& forecast) {
 
 /// Whether the tool is at the position of the target, or nearly so.
 bool is_near(const Arm& arm, const Snapshot& now) {
-  const LinkPoses poses = forward_kinematics(arm, now.arm.position_rad);
-  return (now.target.position_m - poses.tool_position).norm() < kInPlace_m;
+  return distance_share(forward_kinematics(arm, now.arm.position_rad), now.target) < 1.0;
 }
 
 /// The same of a target at rest.
@@ -170,7 +168,7 @@ void Foresight::search(const Snapshot& now) {
     guide_.foresight_status = ForesightStatus::kWaiting;
 }
 
-void Foresight::set_goal(const Snapshot& now) {
+void Foresight::begin_goal(const Snapshot& now) {
   faster_left_ = kSearchesForFaster;
   const bool near = now.target.tracks_orientation && is_near(model_.arm, now);
   has_followed_ = is_moving_pose(now.target) ? has_followed_ || near : has_followed_ && near;
@@ -179,7 +177,7 @@ void Foresight::set_goal(const Snapshot& now) {
 const Guide& Foresight::update(const Snapshot& now) {
   if (!now.moves || now.tracking != tracking_) reset(now.tracking);
   if (!now.moves) return guide_;
-  if (now.tracking && goal_.set_goal(now.target)) set_goal(now);
+  if (now.tracking && goal_.set_goal(now.target)) begin_goal(now);
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(now, expected_)) searches_left_ = kSearchesAfterBad;
   if (calls_++ % kAssessEvery_calls != 0) {

@@ -42,8 +42,8 @@ class Foresight {
   /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 20
   /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone, the first 10
   /// strictly: the arm changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
-  /// A tool that has followed a moving pose to its rest, up to a new goal more than 0.1 m away, is not led far away and
-  /// back for a turn of a few degrees (rollout.h): nobody expects an arm that follows to swing out when it may stop.
+  /// A tool that has followed a moving pose to its rest is not led far away and back for a turn of a few degrees
+  /// (rollout.h), until a new goal at rest is more than 0.1 m away.
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with
@@ -71,7 +71,7 @@ class Foresight {
 
  private:
   void reset(bool tracking);
-  void set_goal(const Snapshot& now);
+  void begin_goal(const Snapshot& now);
   void assess(const Snapshot& now);
   void search(const Snapshot& now);
   void search_faster(const Snapshot& now);

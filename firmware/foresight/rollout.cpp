@@ -45,7 +45,8 @@ constexpr double kSqueezedShare = 1.5;
 
 constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 
-/// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
+/// How much the time away from a target counts, 0 to 1. moves: it was a moving pose when the rollout began.
+/// has_followed: as in run().
 double away_share(const LinkPoses& poses, const Target& target, bool moves, bool has_followed) {
   if (!target.tracks_orientation) return 1.0;
   const double share = distance_share(poses, target);

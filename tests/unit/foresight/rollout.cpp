@@ -119,8 +119,8 @@ void a_rollout_with_a_clear_path_arrives_at_the_cost_of_the_time_it_takes(void**
   check(std::abs(forecast.cost_s - arrival_s) < 0.15, "%g s, and %g s in the loop", forecast.cost_s, arrival_s);
 }
 
-/// Only the tool's orientation is missing; it costs half of the time that the turn takes.
-void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
+/// The arm tracks a pose at rest; the tool has its position, and a turn about z is missing.
+ClosedLoop at_a_pose_turned_by(double turn_rad) {
   ClosedLoop loop = test::at_home("sidestep");
   const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
   loop.target.position_m = poses.tool_position;
@@ -128,7 +128,13 @@ void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
   loop.target.tracks_orientation = true;
   loop.sends_target = true;
   loop.run(2.0);
-  loop.target.orientation = Quaternion(Eigen::AngleAxisd(1.0, Vector3::UnitZ())) * loop.target.orientation;
+  loop.target.orientation = Quaternion(Eigen::AngleAxisd(turn_rad, Vector3::UnitZ())) * loop.target.orientation;
+  return loop;
+}
+
+/// Only the tool's orientation is missing; it costs half of the time that the turn takes.
+void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
+  ClosedLoop loop = at_a_pose_turned_by(1.0);
   const Forecast forecast = forecast_of(loop);
   assert_true(forecast.arrives);
   double turn_s = 0.0;
@@ -143,14 +149,7 @@ void at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half(void**) {
 
 /// The tool is 0.2 rad from a pose: at most 0.4 of what counts where the pose is to be reached.
 void at_a_pose_that_was_followed_a_small_turn_that_is_missing_costs_little(void**) {
-  ClosedLoop loop = test::at_home("sidestep");
-  const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
-  loop.target.position_m = poses.tool_position;
-  loop.target.orientation = Quaternion(poses.tool_rotation);
-  loop.target.tracks_orientation = true;
-  loop.sends_target = true;
-  loop.run(2.0);
-  loop.target.orientation = Quaternion(Eigen::AngleAxisd(0.2, Vector3::UnitZ())) * loop.target.orientation;
+  ClosedLoop loop = at_a_pose_turned_by(0.2);
   const auto rollout = std::make_unique<Rollout>(loop.model);
   const auto snapshot = snapshot_of(loop);
   const double reached_s = rollout->run(*snapshot, Guide{}).cost_s;
