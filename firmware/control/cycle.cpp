@@ -9,6 +9,7 @@
 #include "firmware/control/posture_law.h"
 #include "firmware/control/shield/shield.h"
 #include "firmware/control/sidestep_law.h"
+#include "firmware/control/task_compatibility.h"
 
 namespace sidestep {
 namespace {
@@ -25,7 +26,8 @@ NominalCommand evaluate_law(const Model& model, const LawInput& input, const Sta
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
   if (guide) return guided_law(settings.sidestep, input, *guide, guide_s);
   if (input.target.is_posture()) return posture_law(settings.sidestep, input);
-  return sidestep_law(settings.sidestep, input, away_from_limits(settings.sidestep, input));
+  const JointVector preferred_radps = away_from_limits(settings.sidestep, input) + toward_task_compatibility(input);
+  return sidestep_law(settings.sidestep, input, preferred_radps);
 }
 
 /// How much the target's motion counts in the shield: from 0 at rest to 1 at 0.05 m/s and above. Only in TRACK: the

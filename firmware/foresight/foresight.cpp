@@ -41,14 +41,10 @@ bool is_good(const Snapshot& now, const Forecast& forecast) {
   return !forecast.collides && forecast.cost_s - forecast.proximity_s < kGoodCost_s;
 }
 
-/// Whether the tool is at the position of the target, or nearly so.
-bool is_near(const Arm& arm, const Snapshot& now) {
-  return distance_share(forward_kinematics(arm, now.arm.position_rad), now.target) < 1.0;
-}
-
-/// The same of a target at rest.
+/// Whether the tool is at the position of a target at rest, or nearly so.
 bool is_in_place(const Arm& arm, const Snapshot& now) {
-  return now.tracking && !now.target.is_posture() && is_at_rest(now.target) && is_near(arm, now);
+  if (!now.tracking || now.target.is_posture() || !is_at_rest(now.target)) return false;
+  return distance_share(forward_kinematics(arm, now.arm.position_rad), now.target) < 1.0;
 }
 
 }  // namespace
@@ -63,7 +59,6 @@ void Foresight::reset(bool tracking) {
   calls_ = 0;
   searches_left_ = 0;
   faster_left_ = 0;
-  has_followed_ = false;
   candidate_stuck_ = false;
   planned_retreat_from_persons_ = false;
   goal_.forget_goal();
@@ -78,9 +73,9 @@ void Foresight::adopt(const Guide& guide, const Forecast& forecast) {
 }
 
 void Foresight::assess(const Snapshot& now) {
-  expected_ = rollout_.run(now, guide_, has_followed_);
+  expected_ = rollout_.run(now, guide_);
   if (guide_.knots > 0) {
-    const Forecast direct = rollout_.run(now, Guide{}, has_followed_);
+    const Forecast direct = rollout_.run(now, Guide{});
     const bool among_persons = direct.proximity_s > 0.0;
     const bool is_safe = !direct.collides && (!among_persons || direct.cost_s < expected_.cost_s);
     direct_in_a_row_ = is_safe ? direct_in_a_row_ + 1 : 0;
@@ -130,13 +125,13 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
 /// snapshot to the next. So the danger is not over because one of two forecasts misses it.
 void Foresight::evaluate_candidate(const Snapshot& now, double worth_s) {
   const double collision_s = expected_.collision_s;
-  expected_ = rollout_.run(now, guide_, has_followed_);
+  expected_ = rollout_.run(now, guide_);
   if (std::isfinite(collision_s) && !expected_.collides) {
     expected_.collides = true;
     expected_.collision_s = collision_s;
     expected_.cost_s += kCollisionCost_s;
   }
-  const Forecast forecast = rollout_.run(now, candidate_, has_followed_);
+  const Forecast forecast = rollout_.run(now, candidate_);
   const bool is_adopted = forecast.cost_s < expected_.cost_s - worth_s;
   if (is_adopted) adopt(candidate_, forecast);
   candidate_stuck_ = now.target.is_posture() && !is_adopted && !forecast.arrives && !forecast.collides;
@@ -168,16 +163,10 @@ void Foresight::search(const Snapshot& now) {
     guide_.foresight_status = ForesightStatus::kWaiting;
 }
 
-void Foresight::begin_goal(const Snapshot& now) {
-  faster_left_ = kSearchesForFaster;
-  const bool near = now.target.tracks_orientation && is_near(model_.arm, now);
-  has_followed_ = is_moving_pose(now.target) ? has_followed_ || near : has_followed_ && near;
-}
-
 const Guide& Foresight::update(const Snapshot& now) {
   if (!now.moves || now.tracking != tracking_) reset(now.tracking);
   if (!now.moves) return guide_;
-  if (now.tracking && goal_.set_goal(now.target)) begin_goal(now);
+  if (now.tracking && goal_.set_goal(now.target)) faster_left_ = kSearchesForFaster;
   // Forecasts may alternate: an arm that waits beside an obstacle seems to get past it in one of two.
   if (calls_ > 0 && !is_good(now, expected_)) searches_left_ = kSearchesAfterBad;
   if (calls_++ % kAssessEvery_calls != 0) {

@@ -42,8 +42,6 @@ class Foresight {
   /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 20
   /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone, the first 10
   /// strictly: the arm changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
-  /// A tool that has followed a moving pose to its rest is not led far away and back for a turn of a few degrees
-  /// (rollout.h), until a new goal at rest is more than 0.1 m away.
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with
@@ -71,7 +69,6 @@ class Foresight {
 
  private:
   void reset(bool tracking);
-  void begin_goal(const Snapshot& now);
   void assess(const Snapshot& now);
   void search(const Snapshot& now);
   void search_faster(const Snapshot& now);
@@ -88,9 +85,8 @@ class Foresight {
   GoalSearch goal_;
   bool tracking_ = false;  ///< of the last snapshot
   int64_t calls_ = 0;
-  int searches_left_ = 0;      ///< after a forecast that was not good
-  int faster_left_ = 0;        ///< calls that improve a good forecast for the present goal
-  bool has_followed_ = false;  ///< the target is a pose that moved, and the tool has been within 0.1 m of it
+  int searches_left_ = 0;  ///< after a forecast that was not good
+  int faster_left_ = 0;    ///< calls that improve a good forecast for the present goal
   Guide guide_;
   Forecast expected_;             ///< under guide_
   Expectation expectation_;       ///< of expected_

@@ -34,9 +34,6 @@ constexpr double kNoArrivalCost_s = 5.0;
 constexpr double kAway_m = 0.1;
 constexpr double kNotTurned = 0.5;  // what counts at a pose at rest where only the orientation is missing
 
-// From this orientation error on it counts in full at a pose that the tool has followed to its rest.
-constexpr double kFarTurned_rad = 0.5;
-
 // A rollout is coarse: below this share of the hard clearance a contact is assumed possible.
 constexpr double kCollisionShare = 0.5;
 
@@ -45,15 +42,11 @@ constexpr double kSqueezedShare = 1.5;
 
 constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 
-/// How much the time away from a target counts, 0 to 1. moves: it was a moving pose when the rollout began.
-/// has_followed: as in run().
-double away_share(const LinkPoses& poses, const Target& target, bool moves, bool has_followed) {
+/// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
+double away_share(const LinkPoses& poses, const Target& target, bool moves) {
   if (!target.tracks_orientation) return 1.0;
   const double share = distance_share(poses, target);
-  if (moves) return share;
-  const double turn_rad = target.orientation.angularDistance(Quaternion(poses.tool_rotation));
-  const double not_turned = kNotTurned * (has_followed ? std::min(1.0, turn_rad / kFarTurned_rad) : 1.0);
-  return not_turned + (1.0 - not_turned) * share;
+  return moves ? share : kNotTurned + (1.0 - kNotTurned) * share;
 }
 
 /// By dt_s, to after_s from the beginning; as predicted_obstacle().
@@ -146,7 +139,7 @@ bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const Link
   return std::none_of(clearance.near.begin(), clearance.near.end(), comes);
 }
 
-Forecast Rollout::run(const Snapshot& from, const Guide& guide, bool has_followed) {
+Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
   const double horizon_s = model_.settings.foresight.horizon_s;
   obstacles_.count = from.nearby.count;
   std::copy_n(from.nearby.obstacles.begin(), from.nearby.count, obstacles_.obstacles.begin());
@@ -187,7 +180,7 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide, bool has_followe
     const LinkPoses poses = forward_kinematics(model_.arm, arm.position_rad, others);
     forecast.arrives = !from.tracking || (target.is_posture() ? is_in_posture(model_.arm, arm.position_rad, target)
                                                               : is_at(poses, target));
-    away = away_share(poses, target, is_moving_pose(from.target), has_followed);
+    away = away_share(poses, target, is_moving_pose(from.target));
     const auto stay_away = [&](double for_s) {
       forecast.away_s += for_s;
       forecast.cost_s += away * for_s;

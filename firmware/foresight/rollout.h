@@ -22,8 +22,7 @@ struct Forecast {
   double away_s = 0.0;                                           ///< time not at the target, in full
   double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
                         ///< The first two count in full from 0.1 m on if the target is a pose, less below: nothing
-                        ///< at the position of one that moves, half at that of one at rest, and in proportion
-                        ///< below 0.5 rad if the tool has followed it there
+                        ///< at the position of one that moves, half at that of one at rest
   double proximity_s = 0.0;  ///< the further part of cost_s for the nearness of persons at the end, in TRACK:
                              ///< kProximityCost_s person_proximity(); 0 if shield.person_weight is 0
 
@@ -39,9 +38,8 @@ class Rollout {
  public:
   explicit Rollout(const Model& model);
 
-  /// From a snapshot with moves = true, under a guide (no knots: the law alone). has_followed: the target is a pose
-  /// that the tool has followed to where it is. No allocation.
-  Forecast run(const Snapshot& from, const Guide& guide, bool has_followed = false);
+  /// From a snapshot with moves = true, under a guide (no knots: the law alone). No allocation.
+  Forecast run(const Snapshot& from, const Guide& guide);
 
  private:
   bool stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
