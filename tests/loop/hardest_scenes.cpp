@@ -82,7 +82,7 @@ void an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place(void*
 /// The shoulder would pass beside a singular configuration, where the first joint turns half a turn at its speed limit
 /// and stops at its position limit, or joints would reach their limits one after the other: the tool was 40 to 120 mm
 /// late without foresight. The arm goes through other configurations in time, by the law alone.
-void an_arm_that_follows_a_pose_keeps_to_configurations_that_can_go_on(void**) {
+void moving_poses_are_followed_past_singular_configurations_without_foresight(void**) {
   for (const uint64_t scene : std::initializer_list<uint64_t>{2000408, 12000006, 12000296, 12000318, 12000329}) {
     const TrialMetrics metrics = run_scene({"follow6d", scene}, false);
     check(metrics.error_rms_m < 0.01, "follow6d:%lu: %g m", scene, metrics.error_rms_m);
@@ -151,7 +151,7 @@ int main() {
       cmocka_unit_test(there_is_no_contact_with_or_without_foresight),
       cmocka_unit_test(links_do_not_touch_where_a_sphere_leaves_little_room),
       cmocka_unit_test(an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place),
-      cmocka_unit_test(an_arm_that_follows_a_pose_keeps_to_configurations_that_can_go_on),
+      cmocka_unit_test(moving_poses_are_followed_past_singular_configurations_without_foresight),
       cmocka_unit_test(moving_poses_are_followed),
       cmocka_unit_test(moving_poses_are_followed_among_obstacles),
       cmocka_unit_test(obstacles_that_change_their_course_are_evaded),
