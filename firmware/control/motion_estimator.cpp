@@ -98,10 +98,11 @@ Vector3 MotionEstimator::lead_mps(const Report& velocity_mps, History& velocitie
 void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
   const Capsule& capsule = obstacle.capsule;
   const Vector3 velocity_mps = track.centre.velocity_mps({now_s, capsule.centre()});
-  if (obstacle.velocity_mps.isZero(0.0)) obstacle.velocity_mps = velocity_mps;
+  const bool is_reported = !obstacle.velocity_mps.isZero(0.0);
+  if (!is_reported) obstacle.velocity_mps = velocity_mps;
   if (track.centre.began()) track.velocities.clear();
   const Vector3 lead = lead_mps({now_s, obstacle.velocity_mps}, track.velocities);
-  if (track.centre.moves() && obstacle.id > kNeighbourIds) obstacle.velocity_mps += lead;
+  if ((is_reported || track.centre.moves()) && obstacle.id > kNeighbourIds) obstacle.velocity_mps += lead;
   if (capsule.is_sphere()) return;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
   if (half_axis_m.dot(track.half_axis_m) < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order

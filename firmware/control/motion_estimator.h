@@ -24,8 +24,8 @@ namespace sidestep {
 /// A linear velocity v, reported or estimated, becomes v + 0.2 s a (the lead, at most 0.5 m/s): whatever predicts at
 /// constant velocity thus follows an obstacle that turns or starts. The acceleration a is the slope of the velocities.
 /// Of a only what stands out from the noise counts: a (1 - (5 s / |a|)^2), or 0, with the standard deviation s of the
-/// slope. An obstacle at rest has no lead, nor do the links of other arms: their sets are merged with others as
-/// they arrive, so that the lead would depend on the order of arrival.
+/// slope. An obstacle at rest whose velocity is not reported has no lead, nor do the links of other arms: their sets
+/// are merged with others as they arrive, so that the lead would depend on the order of arrival.
 ///
 /// The angular velocity is that of the axis, perpendicular to it; a sphere has none, and a box or cylinder that spins
 /// about its axis is not noticed. Obstacles are matched by id, also if sets in between lack them; obstacles with the

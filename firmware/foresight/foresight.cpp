@@ -18,9 +18,11 @@ constexpr int kTrustedInARow = 4;
 constexpr int kTrustedAmongPersons = 10;
 constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the arm looks for a retreat
 
-// So often a search looks for a self-motion alone, while the tool is in place and no collision is near.
-constexpr int kSelfMotionSearches = 20;
-constexpr int kLooseSelfMotionSearches = 10;  // the last ones: the tool may leave its place by some centimetres
+// So often a search looks for a self-motion alone, while the tool is in place and no collision is near. Few tries find
+// one that keeps the tool near its place where none keeps it there, so that most searches are for these.
+constexpr int kSelfMotionSearches = 60;
+constexpr int kLooseSelfMotionSearches = 50;  // the last ones
+constexpr int kFarSelfMotionSearches = 10;    // the last of these
 constexpr double kNearCollision_s = 3.0;
 
 // Where everything rests, forecasts are exact enough for a smaller difference. Later than this an arm is well under
@@ -108,8 +110,11 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   goal_.examined(blocked);
   if (blocked) return {};
   if (prefers_self_motion(now)) {
-    const bool strictly = --self_motions_left_ >= kLooseSelfMotionSearches;
-    Guide guide = planner_.plan_self_motion(now, strictly);
+    --self_motions_left_;
+    const Excursion excursion = self_motions_left_ >= kLooseSelfMotionSearches ? Excursion::kNone
+                                : self_motions_left_ >= kFarSelfMotionSearches ? Excursion::kNear
+                                                                               : Excursion::kFar;
+    Guide guide = planner_.plan_self_motion(now, excursion);
     goal_.searched(planner_.found_goal());
     return guide;
   }

@@ -39,9 +39,10 @@ class Foresight {
   /// collides only the tree planner plans, once: the paths of plan_to_target() may lead links into each other, which
   /// the shield refuses, and to a posture they are all nearly the same.
   ///
-  /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 20
-  /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone, the first 10
-  /// strictly: the arm changes its configuration, and the tool stays at the target. Nor is anything faster looked for.
+  /// While the tool is within 0.1 m of a target at rest and no collision is predicted for the next 3 s, the first 60
+  /// searches since the guide was last changed or a forecast was good plan with plan_self_motion() alone, 10 with
+  /// Excursion::kNone, 40 with kNear, 10 with kFar: the arm changes its configuration, and the tool stays at the target
+  /// as far as possible. Nor is anything faster looked for.
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with

@@ -42,10 +42,9 @@ constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
 constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
 
-// Self-motions keep the tool in place, strictly or nearly so. So many seconds longer may one take that keeps the tool
-// nearer by 0.1 m for 1 s.
-constexpr double kStrictDamping = 0.01;
-constexpr double kDampings[] = {kStrictDamping, 0.1, 0.2, 0.4};
+// The dampings of self-motions, in turns: the first, the first three or all, by Excursion. So many seconds longer may
+// one take that keeps the tool nearer by 0.1 m for 1 s.
+constexpr double kDampings[] = {0.01, 0.1, 0.2, 0.4};
 constexpr double kAwayCost = 20.0;
 
 // A guide ends so much before the horizon, so that the clearance at its end is known for as long.
@@ -163,14 +162,14 @@ double Planner::cost_of_self_motion_s(const Snapshot& from, const Guide& guide) 
   return cost_s;
 }
 
-Guide Planner::plan_self_motion(const Snapshot& from, bool strictly) {
+Guide Planner::plan_self_motion(const Snapshot& from, Excursion excursion) {
   Target place = from.target;
   place.tracks_orientation = false;
   found_goal_ = false;
   Guide best;
   double least_s = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < kSelfMotionTriesPerCall; ++attempt) {
-    const double damping = strictly ? kStrictDamping : kDampings[attempt % std::size(kDampings)];
+    const double damping = kDampings[attempt % static_cast<int>(excursion)];
     SelfMotion motion(model_.arm, from.arm.position_rad, place.position_m, damping);
     JointVector goal_rad;
     const bool detours = random_.uniform(0.0, 1.0) < kDetourShare;

@@ -5,6 +5,10 @@
 
 namespace sidestep {
 
+/// How far the tool may leave its place in a self-motion: not at all, some centimetres, or farther. The value is the
+/// number of dampings that are tried.
+enum class Excursion { kNone = 1, kNear = 3, kFar = 4 };
+
 /// Searches for guides by random sampling: joint paths in time that keep clear of the obstacles at their present
 /// velocities, persons as predicted_obstacle().
 ///
@@ -27,10 +31,10 @@ class Planner {
   Guide plan_to_target(const Snapshot& from);
 
   /// For a target at rest that has the tool in place, or nearly so: the same in 40 tries, with guides along which the
-  /// tool stays there (self_motion.h), strictly, or in some more strictly than in others, and in 30 % of the tries
-  /// by way of another configuration that has the tool there. Returns the clear one with the least sum of its duration
+  /// tool stays there (self_motion.h), as far as `excursion` says, and in 30 % of the tries by way of another
+  /// configuration that has the tool there. Returns the clear one with the least sum of its duration
   /// and 20 times the time that the tool is away, which counts in full from 0.1 m on.
-  Guide plan_self_motion(const Snapshot& from, bool strictly);
+  Guide plan_self_motion(const Snapshot& from, Excursion excursion);
 
   /// Whether the last plan_to_target() or plan_self_motion() found a goal configuration, clear or not.
   bool found_goal() const { return found_goal_; }

@@ -66,14 +66,15 @@ void foresight_arrives_without_contact(void**) {
 }
 
 /// The tool rests at its target when an obstacle comes that the arm, as it stands, cannot evade in time, or when it
-/// cannot turn any farther. Guides led it up to 1 m away and back.
+/// cannot turn any farther. Guides led it up to 1 m away and back: ways nearer to its place are rare.
 void an_arm_at_its_target_changes_its_configuration_with_the_tool_in_place(void**) {
   for (const SceneName& scene : {SceneName{"clutter", 2000297}, {"clutter", 2001222}, {"clutter", 2001709}}) {
     const TrialMetrics metrics = run_scene(scene, true);
     check(metrics.final_error_m < kArrived_m, "%s:%lu: %g m", scene.family, scene.seed, metrics.final_error_m);
     check(metrics.clearance_m > 0.0, "%s:%lu: %g m", scene.family, scene.seed, metrics.clearance_m);
   }
-  for (const SceneName& scene : {SceneName{"follow6d", 3000219}, {"follow6d", 13000229}, {"follow6d", 15000488}}) {
+  for (const SceneName& scene :
+       {SceneName{"follow6d", 3000219}, {"follow6d", 11000409}, {"follow6d", 13000229}, {"follow6d", 15000488}}) {
     const TrialMetrics metrics = run_scene(scene, true);
     check(metrics.error_max_m < 0.03, "%s:%lu: %g m", scene.family, scene.seed, metrics.error_max_m);
   }
@@ -114,7 +115,8 @@ void moving_poses_are_followed_among_obstacles(void**) {
 
 /// In these scenes an obstacle turns toward a link. Predicted at the velocity that it had, it was evaded too late.
 void obstacles_that_change_their_course_are_evaded(void**) {
-  for (const SceneName& scene : {SceneName{"erratic", 2002054}, {"erratic", 12001008}, {"erratic", 12001592}}) {
+  for (const SceneName& scene :
+       {SceneName{"erratic", 2002054}, {"erratic", 3000281}, {"erratic", 12001008}, {"erratic", 12001592}}) {
     const TrialMetrics metrics = run_scene(scene, true);
     check(metrics.clearance_m > 0.0, "%s:%lu: %g m", scene.family, scene.seed, metrics.clearance_m);
   }

@@ -142,6 +142,19 @@ void a_reported_velocity_that_changes_is_led_by_its_change_in_a_fifth_of_a_secon
   }
 }
 
+void a_reported_velocity_is_led_before_the_obstacle_has_left_its_place(void**) {
+  Scene scene;
+  Obstacle last;
+  double x_m = 0.0;
+  for (int k = 0; k <= 120; ++k) {  // creeps for 1 s, then accelerates by 0.5 m/s2 for 0.2 s
+    Obstacle reported = ball(1, Vector3(x_m, 0, 0));
+    reported.velocity_mps = Vector3(0.01 + 0.005 * std::max(0, k - 100), 0, 0);
+    x_m += 0.01 * reported.velocity_mps.x();
+    last = scene.send({reported}, 0.01);
+  }
+  check_near(last.velocity_mps, Vector3(0.01 + 0.1 + 0.2 * 0.5, 0, 0), 0.005);
+}
+
 /// A camera's: finite differences of noisy positions over 0.1 s.
 void noise_of_a_reported_velocity_leads_it_seldom(void**) {
   Random random(7);
@@ -241,6 +254,7 @@ int main() {
       cmocka_unit_test(the_velocity_of_a_noisy_obstacle_is_right_on_average_and_its_error_is_bounded),
       cmocka_unit_test(a_constant_reported_velocity_is_not_changed),
       cmocka_unit_test(a_reported_velocity_that_changes_is_led_by_its_change_in_a_fifth_of_a_second),
+      cmocka_unit_test(a_reported_velocity_is_led_before_the_obstacle_has_left_its_place),
       cmocka_unit_test(noise_of_a_reported_velocity_leads_it_seldom),
       cmocka_unit_test(an_obstacle_that_stops_rests),
       cmocka_unit_test(another_obstacle_under_the_same_id_begins_anew),
