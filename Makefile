@@ -127,7 +127,7 @@ all: $(PROGRAMS) $(PYPROJECT) ## set up what is missing and build the programs
 campaign: all ## run the witnessed benchmark: FAMILY (default all), COUNT (500), SEED (1), LAW (sidestep)
 	@$(BUILD)/campaign --family $(FAMILY) --count $(COUNT) --seed $(SEED) --law $(LAW)
 
-bench: $(BUILD)/bench $(BUILD)/.python-robots ## measure the CPU time of a hot step and of the baseline computation
+bench: $(BUILD)/bench $(BUILD)/.python-robots ## measure the CPU time of a hot step, of the baseline computation and of the planner
 	@$(BUILD)/bench $$(ls $(ROBOTS)/panda_description/urdf/panda.urdf 2>/dev/null)
 
 figures: all ## draw the figures of all one-arm scenarios with both laws, and the trade-off over the paper's gains

@@ -1,5 +1,6 @@
 // CPU time of step() among moving spheres, compared with the baseline and with distance only (baseline.h), and of a
-// Panda with meshes, also with its hand in a shelf. The argument is the URDF of that Panda; without one it is left out.
+// Panda with meshes, also with its hand in a shelf; and of the tree planner in furniture. The argument is the URDF of
+// that Panda; without one it is left out.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include "firmware/base/realtime.h"
 #include "firmware/io/config/config.h"
 #include "tests/bench/baseline.h"
+#include "tests/bench/planning.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/lwa3.h"
 #include "tests/support/random.h"
@@ -22,6 +24,7 @@ constexpr double kTargetRate_radps = 0.5;
 constexpr int kCalls = 5;         // between two readings of the clock, which take as long as a small cycle
 constexpr int kRepeats = 2;       // of these calls; the least time counts
 constexpr int kStartCycles = 60;  // until the controller tracks
+constexpr int kPlanningScenes = 20;
 
 struct Box {
   Vector3 lower, upper;
@@ -225,6 +228,16 @@ void print_panda(const std::string& urdf) {
   }
 }
 
+void print_planning() {
+  std::printf("CPU time of the first guide in furniture, %d scenes of each family, ms\n", kPlanningScenes);
+  for (const std::string arm : {"lwa3", "panda"}) {
+    Values ms{bench::first_guides_ms("firmware/config/" + arm + ".yaml", kPlanningScenes)};
+    std::printf("%-17s  %-13s %9.2f %9.2f %9.2f %9.2f\n", arm.c_str(), "tree planner", ms.at(0.5), ms.mean(),
+                ms.at(0.99), ms.at(1.0));
+    std::fflush(stdout);
+  }
+}
+
 int run(int argc, char** argv) {
   std::printf("CPU time of a hot step, us; ratios of step() as median / mean\n");
   std::printf("%-11s %5s  %-13s %9s %9s %9s %9s  %19s  %14s  %s\n", "spheres", "", "", "median", "mean", "p99", "max",
@@ -235,6 +248,7 @@ int run(int argc, char** argv) {
     print_scene({"in reach", spheres, kWorkspace, cycles});
   }
   if (argc > 1) print_panda(argv[1]);
+  print_planning();
   return 0;
 }
 
