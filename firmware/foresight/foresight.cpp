@@ -43,6 +43,12 @@ bool is_good(const Snapshot& now, const Forecast& forecast) {
   return !forecast.collides && forecast.cost_s - forecast.proximity_s < kGoodCost_s;
 }
 
+/// Of the next search, when so many searches for a self-motion are left.
+Excursion excursion_of(int searches_left) {
+  if (searches_left > kLooseSelfMotionSearches) return Excursion::kNone;
+  return searches_left > kFarSelfMotionSearches ? Excursion::kNear : Excursion::kFar;
+}
+
 /// Whether the tool is at the position of a target at rest, or nearly so.
 bool is_in_place(const Arm& arm, const Snapshot& now) {
   if (!now.tracking || now.target.is_posture() || !is_at_rest(now.target)) return false;
@@ -110,11 +116,7 @@ Guide Foresight::plan_to_goal(const Snapshot& now) {
   goal_.examined(blocked);
   if (blocked) return {};
   if (prefers_self_motion(now)) {
-    --self_motions_left_;
-    const Excursion excursion = self_motions_left_ >= kLooseSelfMotionSearches ? Excursion::kNone
-                                : self_motions_left_ >= kFarSelfMotionSearches ? Excursion::kNear
-                                                                               : Excursion::kFar;
-    Guide guide = planner_.plan_self_motion(now, excursion);
+    Guide guide = planner_.plan_self_motion(now, excursion_of(self_motions_left_--));
     goal_.searched(planner_.found_goal());
     return guide;
   }

@@ -32,8 +32,8 @@ class Planner {
 
   /// For a target at rest that has the tool in place, or nearly so: the same in 40 tries, with guides along which the
   /// tool stays there (self_motion.h), as far as `excursion` says, and in 30 % of the tries by way of another
-  /// configuration that has the tool there. Returns the clear one with the least sum of its duration
-  /// and 20 times the time that the tool is away, which counts in full from 0.1 m on.
+  /// configuration that has the tool there. Returns the clear one with the least sum of its duration and 20 times the
+  /// time that the tool is away, which counts in full from 0.1 m on.
   Guide plan_self_motion(const Snapshot& from, Excursion excursion);
 
   /// Whether the last plan_to_target() or plan_self_motion() found a goal configuration, clear or not.
