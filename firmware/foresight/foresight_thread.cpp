@@ -1,11 +1,18 @@
 #include "firmware/foresight/foresight_thread.h"
 
+#include <algorithm>
+
+#include "firmware/base/load_limit.h"
 #include "firmware/base/realtime.h"
 
 namespace sidestep {
 namespace {
 
 constexpr double kUpdateEvery_s = 0.01;
+
+// Of one core: the loop and the receiver need a few percent more. The burst is a few updates on a slow core.
+constexpr double kShare = 0.2;
+constexpr double kBurst_s = 0.03;
 
 }  // namespace
 
@@ -40,11 +47,13 @@ void ForesightThread::update() {
 
 void ForesightThread::run() {
   use_normal_scheduler();
+  LoadLimit limit(kShare, kBurst_s, monotonic_s());
   while (!end_) {
-    sleep_until(monotonic_s() + kUpdateEvery_s);
-    const double now_s = snapshots_.latest().now_s;
-    if (now_s != updated_for_s_) update();
-    updated_for_s_ = now_s;
+    const double now_s = monotonic_s();
+    sleep_until(std::max(now_s + kUpdateEvery_s, limit.next_start_s(now_s, thread_cpu_s())));
+    const double cycle_s = snapshots_.latest().now_s;
+    if (cycle_s != updated_for_s_) update();
+    updated_for_s_ = cycle_s;
   }
 }
 

@@ -10,8 +10,9 @@
 namespace sidestep {
 
 /// Runs foresight for a loop. In real time: on a thread of its own, one update for the newest cycle, at most 100 times
-/// a second; the loop exchanges snapshots and guides with it through triple buffers and never waits. In lockstep: one
-/// update within each submit(), so that runs are deterministic; then the caller does the work itself.
+/// a second and with at most a fifth of one core; the loop exchanges snapshots and guides with it through triple
+/// buffers and never waits. In lockstep: one update within each submit(), so that runs are deterministic; then the
+/// caller does the work itself.
 class ForesightThread {
  public:
   /// To be called from a thread without real-time priority: the new thread inherits the priority of its creator. The

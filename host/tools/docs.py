@@ -32,8 +32,8 @@ PICTURES = {runs.ROOT / "host/scenarios/closing-gap.gif": ("closing-gap", animat
 VIEW, KEY = runs.ROOT / "host/scenarios/view.png", "key"
 EXAMPLES = {"parked-obstacle": "", "closing-gap": "", "pillar": "", "two-people": "", "moving-shelf": "",
             "table": " (static surroundings)", "iiwa-crossing": " (KUKA LBR iiwa 14)",
-            "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "under-table": " (Franka Panda)",
-            "home-from-under-table": " (Franka Panda)",
+            "panda-crossing": " (Franka Panda)", "shelf-pick": " (Franka Panda)", "box": " (Franka Panda)",
+            "under-table": " (Franka Panda)", "home-from-under-table": " (Franka Panda)",
             "shelf-with-a-visitor": " (Franka Panda)", "fetch": " (Franka Panda)", "kitchen": " (Franka Panda)"}
 PLANNED = "planned"  # the paper's law with the other reading of its tool velocity
 BLOCK = re.compile(r"(<!-- make docs: ([\w-]+) -->\n)(.*?)(<!-- end -->)", re.S)

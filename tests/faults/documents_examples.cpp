@@ -4,8 +4,8 @@ namespace {
 
 void the_documents_have_the_results_of_the_example_scenes(void**) {
   sidestep::test::check_documents({"parked-obstacle", "closing-gap", "pillar", "two-people", "moving-shelf", "table",
-                                   "iiwa-crossing", "panda-crossing", "shelf-pick", "under-table",
-                                   "shelf-with-a-visitor", "fetch", "kitchen"});
+                                   "iiwa-crossing", "panda-crossing", "shelf-pick", "box", "under-table",
+                                   "home-from-under-table", "shelf-with-a-visitor", "fetch", "kitchen"});
 }
 
 }  // namespace
