@@ -14,13 +14,18 @@
 namespace sidestep {
 namespace {
 
+/// Of a guide that need not exist.
+bool is_retreat(const Guide* guide) {
+  return guide && guide->foresight_status == ForesightStatus::kWaiting;
+}
+
 /// The joint velocity that the law computes; zero unless tracking. In HOLD only a retreat is followed, because other
 /// guides end at a target. guide_s: guide_time_s().
 NominalCommand evaluate_law(const Model& model, const LawInput& input, const State& state, const Guide* guide,
                             double guide_s) {
   const Settings& settings = model.settings;
-  const bool retreats = guide && guide->foresight_status == ForesightStatus::kWaiting;
-  if (state.supervision.mode == Mode::kHold && retreats) return guided_law(settings.sidestep, input, *guide, guide_s);
+  if (state.supervision.mode == Mode::kHold && is_retreat(guide))
+    return guided_law(settings.sidestep, input, *guide, guide_s);
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
   if (settings.law == Law::kPaper) return paper_law(settings.paper, settings.period_s(), input, planned);
@@ -52,6 +57,7 @@ double far_share(const ShieldSettings& shield, const LawInput& input) {
 }
 
 constexpr double kLeastToolShare = 0.1;  // of tool_weight
+constexpr double kRetreatShare = 0.1;    // of person_weight
 
 /// Share of the shield's tool_weight: all of it for a pose that moves and for a position near the tool. A tenth for a
 /// position far away, to which a detour costs little; for a full pose at rest, where all of it led to contacts in the
@@ -81,10 +87,18 @@ double comfort_weight(const ShieldSettings& shield, const LawInput& input, Mode 
   return least + far_share(shield, input) * (largest - least);
 }
 
+/// Weight of the separation from persons, s2/m2. A retreat may lead past one person, away from several: what it costs
+/// to be near them on the way is part of the choice (rollout.h).
+double person_weight(const ShieldSettings& shield, Mode mode, bool retreats) {
+  if (mode != Mode::kTrack) return 0.0;
+  return retreats ? kRetreatShare * shield.person_weight : shield.person_weight;
+}
+
 /// The safe joint velocity; the nominal one where the shield is off or no stream can run. Updates the evasion, the
 /// Limiting bits and the nearest links.
 JointVector apply_shield(const Model& model, const LawInput& input, const VelocityRange& range,
-                         const JointVector& nominal_radps, double comfort, State& state, Report& report) {
+                         const JointVector& nominal_radps, double comfort, double separation, State& state,
+                         Report& report) {
   const Settings& settings = model.settings;
   const Mode mode = state.supervision.mode;
   const bool faulty_rollout = mode == Mode::kFault && !settings.bridges_outliers;  // a rollout ends there
@@ -100,7 +114,7 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                            settings.period_s(),
                            comfort,
                            settings.shield.tool_weight,
-                           mode == Mode::kTrack ? settings.shield.person_weight : 0.0,
+                           separation,
                            !moves(mode)};
   shield_input.tool_weight *= tool_weight_share(settings.shield, input, mode, keeps_separation(shield_input));
   const double turn_weight = turn_weight_m(moving_share(input.target, mode));
@@ -203,8 +217,10 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   // An arm that is asked to stop comes to rest also where an obstacle is nearer than comfort.
   const bool keeps_comfort = evades && !monitored.status.stop;
   const double comfort = keeps_comfort ? comfort_weight(model.settings.shield, input, mode, guide != nullptr) : 0.0;
+  const bool is_retreating = is_retreat(guide) && guide_s < guide->end_s();
+  const double separation = person_weight(model.settings.shield, mode, is_retreating);
   const JointVector safe_radps =
-      apply_shield(model, input, range, nominal.velocity_radps, comfort, next, result.report);
+      apply_shield(model, input, range, nominal.velocity_radps, comfort, separation, next, result.report);
   probe.passed(Stage::kShield);
 
   if (!safe_radps.allFinite()) latch_not_finite(now_s, next);

@@ -39,6 +39,7 @@ constexpr double kDetour_rad = 1.5;
 // The range of a retreat around the present configuration per joint; every other one may lead farther.
 constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
+constexpr int kPointsFromPersons = 8;   // of a guide
 constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
 
 // The dampings of self-motions, in turns: the first, the first three or all, by Excursion. So many seconds longer may
@@ -199,21 +200,30 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
-  BoundedList<Obstacle, kMaxNearbyObstacles> in_the_end;
+  BoundedList<Obstacle, kMaxNearbyObstacles> persons;
   for (int i = 0; i < from.nearby.count; ++i)
-    in_the_end.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
+    persons.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
   const auto proximity = [&](const JointVector& q_rad) {
     const LinkPoses poses = forward_kinematics(model_.arm, q_rad, others);
-    return person_proximity(poses, in_the_end.begin(), in_the_end.size());
+    return person_proximity(poses, persons.begin(), persons.size());
   };
-  double least = proximity(from.arm.position_rad);
+  const auto mean_proximity = [&](const Guide& guide) {
+    const double start_s = guide.time_s[0], step_s = (guide.end_s() - start_s) / kPointsFromPersons;
+    double sum = 0.0;
+    for (int i = 1; i <= kPointsFromPersons; ++i) sum += proximity(point_of(guide, start_s + i * step_s).position_rad);
+    return sum / kPointsFromPersons;
+  };
+  const double present = proximity(from.arm.position_rad);
+  double least = 2.0 * present;
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
     const JointVector q_rad = random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]);
-    const double found = proximity(q_rad);
-    if (found >= least) continue;
+    const double in_the_end = proximity(q_rad);
+    if (in_the_end >= std::min(present, least)) continue;
     Guide guide = start_of(from, ForesightStatus::kWaiting);
     append(guide, q_rad);
+    const double found = in_the_end + mean_proximity(guide);
+    if (found >= least) continue;
     if (!ends_in_time(from, guide) || !is_clear(from, guide)) continue;
     least = found;
     best = guide;

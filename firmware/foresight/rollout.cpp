@@ -40,6 +40,8 @@ constexpr double kCollisionShare = 0.5;
 // In HOLD a retreat costs nothing, so an arm that is squeezed, though the rollout has no contact, leaves early.
 constexpr double kSqueezedShare = 1.5;
 
+constexpr double kExposureStep_s = 0.1;  // persons and arms move some centimetres meanwhile
+
 constexpr double kRest_radps = 0.005;  // an arm that is slower rests
 
 /// How much the time away from a target counts, 0 to 1; `moves`: it was a moving pose when the rollout began.
@@ -60,6 +62,22 @@ void advance(ObstacleSet& set, double dt_s, double after_s) {
     obstacle = extrapolated(obstacle, dt_s);
   }
 }
+
+/// The integral of person_proximity() over the first kExposure_s.
+class Exposure {
+ public:
+  /// The arm at after_s, which was about the same since the last call.
+  void add(const LinkPoses& poses, const ObstacleSet& set, double after_s) {
+    if (after_s < until_s_ + kExposureStep_s || until_s_ >= kExposure_s) return;
+    const double until_s = std::min(after_s, kExposure_s);
+    integral_s_ += (until_s - until_s_) * person_proximity(poses, set.obstacles.data(), set.count);
+    until_s_ = until_s;
+  }
+  double integral_s() const { return integral_s_; }
+
+ private:
+  double integral_s_ = 0.0, until_s_ = 0.0;
+};
 
 }  // namespace
 
@@ -157,6 +175,8 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
         share * (shield.hard_clearance_m -
                  required_clearance_m(shield.hard_clearance_m, shield.rest_clearance_m, from.nearby.obstacles[i]));
   forecast.period_s = 1.0 / fine_hz_;
+  const bool separates = from.tracking && shield.person_weight > 0.0;
+  Exposure exposure;
   double least_m = std::numeric_limits<double>::infinity(), away = 1.0;
   for (double after_s = 0.0; after_s < horizon_s - kCoarsePeriod_s / 2.0;) {
     model_.settings.rate_hz = after_s < kFine_s - kFinePeriod_s / 2.0 ? fine_hz_ : coarse_hz_;
@@ -190,17 +210,20 @@ Forecast Rollout::run(const Snapshot& from, const Guide& guide) {
                                                 period_s, enough_m, allowance_m.data()));
     if (least_m < enough_m && !forecast.collides) forecast.collision_s = after_s;
     forecast.collides = least_m < enough_m;
+    if (separates) exposure.add(poses, obstacles_, after_s);
     if (after_s <= kForecastPath_s && !forecast.path_rad.is_full()) forecast.path_rad.add(arm.position_rad);
     if (stays_at_rest(from, guide, poses, arm, after_s, forecast.arrives)) {
       if (!forecast.arrives) stay_away(std::max(0.0, horizon_s - after_s));
+      if (separates) exposure.add(poses, obstacles_, horizon_s);
       break;
     }
   }
   if (!forecast.arrives) forecast.cost_s += away * kNoArrivalCost_s;
   if (forecast.collides) forecast.cost_s += kCollisionCost_s;
-  if (from.tracking && shield.person_weight > 0.0) {
+  if (separates) {
     const LinkPoses poses = forward_kinematics(model_.arm, arm.position_rad, others);
-    forecast.proximity_s = kProximityCost_s * person_proximity(poses, obstacles_.obstacles.data(), obstacles_.count);
+    forecast.proximity_s = kProximityCost_s * person_proximity(poses, obstacles_.obstacles.data(), obstacles_.count) +
+                           kExposureCost * exposure.integral_s();
     forecast.cost_s += forecast.proximity_s;
   }
   return forecast;

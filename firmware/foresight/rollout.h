@@ -12,7 +12,11 @@ constexpr double kForecastPath_s = 0.5;  ///< a forecast keeps the arm's path fo
 constexpr int kMaxPathPoints = 64;
 
 constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a collision decides
-constexpr double kProximityCost_s = 60.0;  ///< of persons at all links; tuned on the campaign's two-people@camera
+
+/// Of persons at all links: when the rollout ends, and a second of it at the beginning. Tuned on the campaign's
+/// two-people@camera.
+constexpr double kProximityCost_s = 60.0, kExposureCost = 30.0;
+constexpr double kExposure_s = 3.0;  ///< so long a nearness of persons counts while it lasts
 
 /// The result of a rollout.
 struct Forecast {
@@ -23,8 +27,9 @@ struct Forecast {
   double cost_s = 0.0;  ///< time away from the target, + 5 s if it does not arrive, + kCollisionCost_s if it collides.
                         ///< The first two count in full from 0.1 m on if the target is a pose, less below: nothing
                         ///< at the position of one that moves, half at that of one at rest
-  double proximity_s = 0.0;  ///< the further part of cost_s for the nearness of persons at the end, in TRACK:
-                             ///< kProximityCost_s person_proximity(); 0 if shield.person_weight is 0
+  double proximity_s = 0.0;  ///< the further part of cost_s for the nearness of persons, in TRACK: kProximityCost_s
+                             ///< person_proximity() at the end + kExposureCost times its integral over the first
+                             ///< kExposure_s; 0 if shield.person_weight is 0
 
   double period_s = 0.0;                              ///< between two points of the path
   BoundedList<JointVector, kMaxPathPoints> path_rad;  ///< one period after the snapshot, and so on
