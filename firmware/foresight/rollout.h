@@ -15,7 +15,7 @@ constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a c
 
 /// Of persons at all links: when the rollout ends, and a second of it at the beginning. Tuned on the campaign's
 /// two-people@camera.
-constexpr double kProximityCost_s = 60.0, kExposureCost = 30.0;
+constexpr double kProximityCost_s = 60.0, kExposureCost = 20.0;
 constexpr double kExposure_s = 3.0;  ///< so long a nearness of persons counts while it lasts
 
 /// The result of a rollout.

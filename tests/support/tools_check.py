@@ -355,7 +355,7 @@ def unknown_scenario():
         runs.load_scenario(ROOT / "host/scenarios/nope.yaml")
         assert False
     except runs.RunFailed as error:
-        assert str(error).startswith("host/scenarios/nope.yaml: no such scenario; there are closing-gap,"), error
+        assert str(error).startswith("host/scenarios/nope.yaml: no such scenario; there are box, closing-gap,"), error
 
 
 def taken_port():

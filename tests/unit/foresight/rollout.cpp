@@ -196,7 +196,7 @@ void in_track_the_nearness_of_persons_costs_unless_their_separation_is_off(void*
         const Forecast forecast = forecast_of(loop);
         const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
         const bool costs = kind == Kind::kPerson && weight > 0.0 && tracks;
-        const double expected_s = costs ? (60.0 + 3.0 * 30.0) * person_proximity(poses, &obstacle, 1) : 0.0;
+        const double expected_s = costs ? (60.0 + 3.0 * 20.0) * person_proximity(poses, &obstacle, 1) : 0.0;
         assert_true(!costs || expected_s > 1.0);
         check_near_because(forecast.proximity_s, expected_s, 0.1 * expected_s, "kind %d, weight %g, tracks %d",
                            static_cast<int>(kind), weight, tracks);
