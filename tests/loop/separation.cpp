@@ -120,6 +120,34 @@ void from_a_retreat_the_arm_returns_when_the_persons_have_left(void**) {
   test::check_stream(world.loop);
 }
 
+/// The way of the arm, rad, along a guide that turns it past a person who stands 0.3 m outward of the tool's way.
+double way_past_a_person_rad(ForesightStatus status) {
+  constexpr double kTurn_rad = 1.2, kDuration_s = 1.5;
+  test::ForesightLoop world(test::point_target(Vector3(0.4, 0.3, 0.8)), test::home_rad(), "sidestep", false);
+  JointVector half_rad = test::home_rad(), end_rad = half_rad;
+  half_rad[0] += 0.5 * kTurn_rad;
+  end_rad[0] += kTurn_rad;
+  const Vector3 passes_m = forward_kinematics(test::lwa3(), half_rad).tool_position;
+  const Vector3 outward(passes_m.x(), passes_m.y(), 0.0);
+  world.loop.add_sphere(passes_m + 0.4 * outward.normalized(), Vector3::Zero(), 0.1).kind = Kind::kPerson;
+  world.run(0.5);
+  Guide guide;
+  guide.foresight_status = status;
+  guide.add(world.loop.now_s(), world.loop.arm.position_rad);
+  guide.add(world.loop.now_s() + kDuration_s, end_rad);
+  world.guide = &guide;
+  world.run(kDuration_s);
+  test::check_stream(world.loop);
+  check(world.least_m > 0.1, "%g m", world.least_m);
+  return world.loop.arm.position_rad[0] - test::home_rad()[0];
+}
+
+void a_retreat_leads_past_a_person_of_whom_other_guides_keep_clear(void**) {
+  const double retreat_rad = way_past_a_person_rad(ForesightStatus::kWaiting);
+  const double other_rad = way_past_a_person_rad(ForesightStatus::kGuided);
+  check(retreat_rad > other_rad + 0.4, "a retreat turns by %g rad, another guide by %g rad", retreat_rad, other_rad);
+}
+
 void in_hold_a_person_does_not_drive_the_arm_away(void**) {
   ClosedLoop loop = beside(Kind::kPerson, false);
   const JointVector start_rad = loop.arm.position_rad;
@@ -146,6 +174,7 @@ int main() {
       cmocka_unit_test(the_target_is_reached_when_the_person_has_left),
       cmocka_unit_test(between_two_persons_the_arm_retreats_farther_than_the_shield_alone),
       cmocka_unit_test(from_a_retreat_the_arm_returns_when_the_persons_have_left),
+      cmocka_unit_test(a_retreat_leads_past_a_person_of_whom_other_guides_keep_clear),
       cmocka_unit_test(in_hold_a_person_does_not_drive_the_arm_away),
       cmocka_unit_test(without_its_weight_there_is_no_separation),
   };
