@@ -14,17 +14,12 @@
 namespace sidestep {
 namespace {
 
-/// Of a guide that need not exist.
-bool is_retreat(const Guide* guide) {
-  return guide && guide->foresight_status == ForesightStatus::kWaiting;
-}
-
 /// The joint velocity that the law computes; zero unless tracking. In HOLD only a retreat is followed, because other
 /// guides end at a target. guide_s: guide_time_s().
 NominalCommand evaluate_law(const Model& model, const LawInput& input, const State& state, const Guide* guide,
                             double guide_s) {
   const Settings& settings = model.settings;
-  if (state.supervision.mode == Mode::kHold && is_retreat(guide))
+  if (state.supervision.mode == Mode::kHold && guide && guide->is_retreat())
     return guided_law(settings.sidestep, input, *guide, guide_s);
   if (state.supervision.mode != Mode::kTrack) return {JointVector::Zero(model.arm.joints)};
   const auto planned = state.planned.valid ? std::optional(state.planned.velocity_mps) : std::nullopt;
@@ -217,7 +212,7 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
   // An arm that is asked to stop comes to rest also where an obstacle is nearer than comfort.
   const bool keeps_comfort = evades && !monitored.status.stop;
   const double comfort = keeps_comfort ? comfort_weight(model.settings.shield, input, mode, guide != nullptr) : 0.0;
-  const bool is_retreating = is_retreat(guide) && guide_s < guide->end_s();
+  const bool is_retreating = guide && guide->is_retreat() && guide_s < guide->end_s();
   const double separation = person_weight(model.settings.shield, mode, is_retreating);
   const JointVector safe_radps =
       apply_shield(model, input, range, nominal.velocity_radps, comfort, separation, next, result.report);

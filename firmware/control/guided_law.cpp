@@ -28,7 +28,7 @@ double guide_time_s(const Arm& arm, const Guide& guide, const JointVector& posit
 NominalCommand guided_law(const SidestepGains& gains, const LawInput& input, const Guide& guide, double time_s) {
   const GuidePoint point = point_of(guide, time_s);
   const JointVector feedback_radps = gains.k_guide_per_s * (point.position_rad - input.position_rad);
-  if (time_s >= guide.end_s() && guide.foresight_status != ForesightStatus::kWaiting) {
+  if (time_s >= guide.end_s() && !guide.is_retreat()) {
     if (input.target.is_posture()) return posture_law(gains, input);
     const JointVector fastest = gains.guide_posture_share * input.arm.limits.velocity_radps;
     return sidestep_law(gains, input, feedback_radps.cwiseMax(-fastest).cwiseMin(fastest));

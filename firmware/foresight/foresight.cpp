@@ -87,7 +87,7 @@ void Foresight::assess(const Snapshot& now) {
     const bool among_persons = direct.proximity_s > 0.0;
     const bool is_safe = !direct.collides && (!among_persons || direct.cost_s < expected_.cost_s);
     direct_in_a_row_ = is_safe ? direct_in_a_row_ + 1 : 0;
-    const bool is_retreat = guide_.foresight_status == ForesightStatus::kWaiting;
+    const bool is_retreat = guide_.is_retreat();
     const bool is_over = !now.tracking && !direct.collides && now.now_s >= guide_.end_s();
     const bool is_better =
         direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s);

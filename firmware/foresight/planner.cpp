@@ -39,7 +39,7 @@ constexpr double kDetour_rad = 1.5;
 // The range of a retreat around the present configuration per joint; every other one may lead farther.
 constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
-constexpr int kPointsFromPersons = 8;   // of a guide
+constexpr int kPointsFromPersons = 8;   // on the way, at which the nearness is measured
 constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
 
 // The dampings of self-motions, in turns: the first, the first three or all, by Excursion. So many seconds longer may
@@ -101,7 +101,7 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
     return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
                            from.nearby.count, after_s, enough_m, nullptr, kPersonCoast_s);
   };
-  const bool retreats = guide.foresight_status == ForesightStatus::kWaiting;
+  const bool retreats = guide.is_retreat();
   const double at_start_m =
       retreats ? 0.0 : std::min(enough_m, clearance_at_m(guide.position_rad[0], 0.0) - kStartAllowance_m);
   double after_s = 0.0;
@@ -200,12 +200,12 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
-  BoundedList<Obstacle, kMaxNearbyObstacles> persons;
+  BoundedList<Obstacle, kMaxNearbyObstacles> predicted;
   for (int i = 0; i < from.nearby.count; ++i)
-    persons.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
+    predicted.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
   const auto proximity = [&](const JointVector& q_rad) {
     const LinkPoses poses = forward_kinematics(model_.arm, q_rad, others);
-    return person_proximity(poses, persons.begin(), persons.size());
+    return person_proximity(poses, predicted.begin(), predicted.size());
   };
   const auto mean_proximity = [&](const Guide& guide) {
     const double start_s = guide.time_s[0], step_s = (guide.end_s() - start_s) / kPointsFromPersons;

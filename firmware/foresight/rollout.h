@@ -13,10 +13,10 @@ constexpr int kMaxPathPoints = 64;
 
 constexpr double kCollisionCost_s = 20.0;  ///< more than any delay, so that a collision decides
 
-/// Of persons at all links: when the rollout ends, and a second of it at the beginning. Tuned on the campaign's
-/// two-people@camera.
+/// Costs of person_proximity() 1: where a rollout ends, and for each of the first kExposure_s seconds of the way. Tuned
+/// on the campaign's two-people@camera.
 constexpr double kProximityCost_s = 60.0, kExposureCost = 20.0;
-constexpr double kExposure_s = 3.0;  ///< so long a nearness of persons counts while it lasts
+constexpr double kExposure_s = 3.0;
 
 /// The result of a rollout.
 struct Forecast {

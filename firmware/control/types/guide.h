@@ -42,6 +42,8 @@ struct Guide {
   /// The same at rest.
   void add(double at_s, const JointVector& q_rad) { add(at_s, q_rad, JointVector::Zero(q_rad.size())); }
 
+  /// Whether the path leads to safety and not to a target.
+  bool is_retreat() const { return knots > 0 && foresight_status == ForesightStatus::kWaiting; }
   double end_s() const { return knots > 0 ? time_s[knots - 1] : 0.0; }
 };
 
