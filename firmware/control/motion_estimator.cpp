@@ -21,6 +21,9 @@ constexpr double kLead_s = 0.2;
 constexpr double kLargestLead_mps = 0.5;
 constexpr double kLeadDeviations = 5.0;  // velocities by finite differences have noise that is correlated
 
+constexpr double kMean_s = 0.5;               // about half a stride
+constexpr double kLeastMeanSpeed_mps = 0.15;  // noise and a change of posture are below
+
 }  // namespace
 
 /// The noise of the newest report is learned from its deviation from the line between its neighbours, whose variance
@@ -95,6 +98,16 @@ Vector3 MotionEstimator::lead_mps(const Report& velocity_mps, History& velocitie
   return lead * std::min(1.0, kLargestLead_mps / lead.norm());
 }
 
+Vector3 MotionEstimator::mean_velocity_mps(const Obstacle& obstacle, Track& track, double now_s) {
+  if (obstacle.kind != Kind::kPerson) return Vector3::Zero();
+  const Vector3 position_m = obstacle.capsule.centre();
+  if (track.centre.began()) track.mean_position_m = position_m;
+  const double weight = 1.0 - std::exp(-(now_s - track.reported_s) / kMean_s);
+  track.mean_position_m += weight * (position_m - track.mean_position_m);
+  const Vector3 velocity_mps = (position_m - track.mean_position_m) / kMean_s;
+  return velocity_mps.norm() < kLeastMeanSpeed_mps ? Vector3(Vector3::Zero()) : velocity_mps;
+}
+
 void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
   const Capsule& capsule = obstacle.capsule;
   const Vector3 velocity_mps = track.centre.velocity_mps({now_s, capsule.centre()});
@@ -102,6 +115,7 @@ void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
   if (!is_reported) obstacle.velocity_mps = velocity_mps;
   if (track.centre.began()) track.velocities.clear();
   const Vector3 lead = lead_mps({now_s, obstacle.velocity_mps}, track.velocities);
+  obstacle.mean_velocity_mps = mean_velocity_mps(obstacle, track, now_s);
   if ((is_reported || track.centre.moves()) && obstacle.id > kNeighbourIds) obstacle.velocity_mps += lead;
   if (capsule.is_sphere()) return;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
@@ -130,8 +144,8 @@ void MotionEstimator::complete(ObstacleSet& set, double elapsed_s) {
     if (track.shape != obstacle.shape) track = Track();
     track.id = obstacle.id;
     track.shape = obstacle.shape;
-    track.reported_s = now_s_;
     complete(obstacle, track, now_s_);
+    track.reported_s = now_s_;
   }
   keep_unreported_below(int64_t{std::numeric_limits<int32_t>::max()} + 1);
   count_ = count;

@@ -27,6 +27,9 @@ namespace sidestep {
 /// slope. An obstacle at rest whose velocity is not reported has no lead, nor do the links of other arms: their sets
 /// are merged with others as they arrive, so that the lead would depend on the order of arrival.
 ///
+/// The mean velocity of a person is (p - m) / 0.5 s, where m is the exponential mean of the reported positions p with
+/// this time constant; below 0.15 m/s it is 0. Limbs swing about a body that walks on.
+///
 /// The angular velocity is that of the axis, perpendicular to it; a sphere has none, and a box or cylinder that spins
 /// about its axis is not noticed. Obstacles are matched by id, also if sets in between lack them; obstacles with the
 /// same id are matched in the order of the message. Large: lives on the heap, like an ObstacleSet.
@@ -89,10 +92,12 @@ class MotionEstimator {
     double reported_s = 0.0;
     Point centre, axis;
     History velocities;
+    Vector3 mean_position_m = Vector3::Zero();  ///< of a person's centre: exponential, kMean_s
     Vector3 half_axis_m = Vector3::Zero();
   };
 
   static Vector3 lead_mps(const Report& velocity_mps, History& velocities);
+  static Vector3 mean_velocity_mps(const Obstacle& obstacle, Track& track, double now_s);
   static void complete(Obstacle& obstacle, Track& track, double now_s);
 
   double now_s_ = 0.0;

@@ -99,7 +99,7 @@ bool Planner::is_clear(const Snapshot& from, const Guide& guide) const {
   const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
   const auto clearance_at_m = [&](const JointVector& q_rad, double after_s) {
     return clearance_after(model_.arm, forward_kinematics(model_.arm, q_rad, others), from.nearby.obstacles.data(),
-                           from.nearby.count, after_s, enough_m, nullptr, kPersonCoast_s);
+                           from.nearby.count, after_s, enough_m, nullptr, true);
   };
   const bool retreats = guide.is_retreat();
   const double at_start_m =

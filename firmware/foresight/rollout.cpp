@@ -56,7 +56,8 @@ void advance(ObstacleSet& set, double dt_s, double after_s) {
   for (int i = 0; i < set.count; ++i) {
     Obstacle& obstacle = set.obstacles[i];
     if (obstacle.kind == Kind::kPerson && after_s > kPersonCoast_s) {
-      obstacle.velocity_mps.setZero();
+      if (after_s > kPersonWalk_s) obstacle.mean_velocity_mps.setZero();
+      obstacle.velocity_mps = obstacle.mean_velocity_mps;
       obstacle.angular_velocity_radps.setZero();
     }
     obstacle = extrapolated(obstacle, dt_s);
@@ -87,10 +88,6 @@ Target predicted_target(const Target& target, double after_s) {
   then.velocity_mps.setZero();
   then.angular_velocity_radps.setZero();
   return then;
-}
-
-Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s) {
-  return extrapolated(obstacle, obstacle.kind == Kind::kPerson ? std::min(after_s, kPersonCoast_s) : after_s);
 }
 
 bool is_at_rest(const Target& target) {
@@ -146,8 +143,10 @@ bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const Link
   if (arm.velocity_radps.cwiseQuotient(model_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
   if (guide.knots > 0 && from.now_s + after_s < guide.end_s()) return false;
   if (from.tracking && !is_at_rest(predicted_target(from.target, after_s))) return false;
-  if (!arrives)
-    return std::none_of(obstacles_.obstacles.begin(), obstacles_.obstacles.begin() + obstacles_.count, is_moving);
+  const auto *obstacles = obstacles_.obstacles.begin(), *end = obstacles + obstacles_.count;
+  if (!arrives) return std::none_of(obstacles, end, is_moving);
+  const auto walks_on = [](const Obstacle& obstacle) { return !obstacle.mean_velocity_mps.isZero(0.0); };
+  if (after_s <= kPersonCoast_s && std::any_of(obstacles, end, walks_on)) return false;
   const Reach reach{model_.settings.shield.range_m, model_.settings.foresight.horizon_s - after_s};
   const Clearance clearance = measure_clearance(model_.arm, poses, {&obstacles_, 0.0, 0.0, nullptr}, reach);
   const auto comes = [&](const NearPair& pair) {

@@ -58,13 +58,6 @@ class Rollout {
 /// For how long a target is assumed to keep its velocity.
 constexpr double kTargetCoast_s = 1.0;
 
-/// For how long a person is assumed to keep its velocity: limbs swing and turn back, and what a camera takes for the
-/// velocity of one at rest is noise.
-constexpr double kPersonCoast_s = 0.3;
-
-/// The obstacle after_s later: it keeps its velocity, a person for kPersonCoast_s.
-Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s);
-
 /// Whether both targets are of the same kind, and postures agree within 0.005 rad (times joint_scale) per joint: a
 /// forecast or plan for one is good for the other, the law bridges the rest.
 bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale);

@@ -223,7 +223,7 @@ bool TreePlanner::is_clear_of_movers(const Snapshot& from, const Guide& guide) c
     const double after_s = sample * kSampleEvery_s;
     const LinkPoses poses = forward_kinematics(model_.arm, point_of(guide, from.now_s + after_s).position_rad, others);
     if (clearance_after(model_.arm, poses, movers.begin(), movers.size(), after_s, enough_m, allowance_m.begin(),
-                        kPersonCoast_s) < enough_m)
+                        true) < enough_m)
       return false;
   }
   return true;

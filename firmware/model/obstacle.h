@@ -41,11 +41,13 @@ struct Obstacle {
   Vector3 half_width_m = Vector3::Zero();  ///< half the second longest edge of a box, as a vector; other shapes: 0
   double half_thickness_m = 0.0;  ///< half the shortest edge of a box, which may be 0; radius of a cylinder; else 0
   Kind kind = Kind::kThing;
+  Vector3 mean_velocity_mps = Vector3::Zero();  ///< of the centre of a person that walks; 0: unknown or negligible
 };
 
-/// Whether it moves or turns, however slowly.
+/// Whether it moves, turns or walks, however slowly.
 inline bool is_moving(const Obstacle& obstacle) {
-  return !obstacle.velocity_mps.isZero(0.0) || !obstacle.angular_velocity_radps.isZero(0.0);
+  return !obstacle.velocity_mps.isZero(0.0) || !obstacle.angular_velocity_radps.isZero(0.0) ||
+         !obstacle.mean_velocity_mps.isZero(0.0);
 }
 
 /// The full set of obstacles at one instant. About 600 kB: it lives in a triple buffer or on the heap, never on a

@@ -70,8 +70,18 @@ double nearest_to_long_m(const Links& links, int last_body, const Obstacle& obst
 
 }  // namespace
 
+Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s) {
+  if (obstacle.kind != Kind::kPerson) return extrapolated(obstacle, after_s);
+  Obstacle later = extrapolated(obstacle, std::min(after_s, kPersonCoast_s));
+  const Vector3 walked_m =
+      obstacle.mean_velocity_mps * (std::clamp(after_s, kPersonCoast_s, kPersonWalk_s) - kPersonCoast_s);
+  later.capsule.start += walked_m;
+  later.capsule.end += walked_m;
+  return later;
+}
+
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
-                       double enough_m, const double* allowance_m, double person_coast_s) {
+                       double enough_m, const double* allowance_m, bool predicts_persons) {
   const Links links = moving_links(arm, poses);
   double least_m = enough_m;
   for (int o = 0; o < count; ++o) {
@@ -80,11 +90,13 @@ double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* o
     const int last_body = last_body_to_keep_clear(arm, poses, obstacle.id);
     if (last_body < 0) continue;
     const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
-    const double moves_s = obstacle.kind == Kind::kPerson ? std::min(after_s, person_coast_s) : after_s;
+    const auto later = [&] {
+      const bool is_predicted = predicts_persons && obstacle.kind == Kind::kPerson;
+      return is_predicted ? predicted_obstacle(obstacle, after_s) : extrapolated(obstacle, after_s);
+    };
     const double found_m = capsule.is_sphere()
-                               ? nearest_to_sphere_m(links, last_body, capsule.start + obstacle.velocity_mps * moves_s,
-                                                     capsule.radius_m, below_m)
-                               : nearest_to_long_m(links, last_body, extrapolated(obstacle, moves_s), below_m);
+                               ? nearest_to_sphere_m(links, last_body, later().capsule.start, capsule.radius_m, below_m)
+                               : nearest_to_long_m(links, last_body, later(), below_m);
     if (found_m < below_m) least_m = found_m + allowed_m;
   }
   return least_m;

@@ -235,6 +235,50 @@ void reports_at_one_instant_or_of_a_bad_clock_give_finite_velocities(void**) {
   }
 }
 
+Obstacle hand(const Vector3& position_m) {
+  Obstacle person = ball(1, position_m);
+  person.kind = Kind::kPerson;
+  return person;
+}
+
+/// Also if it swings by 0.15 m once a second, as seen by a camera. Few reports a second lower it.
+void the_mean_velocity_of_a_walker_is_that_of_its_body(void**) {
+  Random random(6);
+  for (const double rate_hz : {10.0, 30.0, 60.0, 100.0}) {
+    for (const double swing_m : {0.0, 0.15}) {
+      Scene scene;
+      const Vector3 velocity_mps(1.3, 0, 0);
+      Vector3 sum_mps = Vector3::Zero();
+      int reports = 0;
+      for (double t_s = 0.0; t_s < 4.0; t_s += 1.0 / rate_hz) {
+        const double swing = swing_m * std::sin(2.0 * M_PI * t_s);
+        const Vector3 position_m = (t_s + swing / 1.3) * velocity_mps + noise(random, 0.007);
+        const Vector3 mean_mps = scene.send({hand(position_m)}, 1.0 / rate_hz).mean_velocity_mps;
+        if (t_s < 2.0) continue;
+        check_near(mean_mps, velocity_mps, 0.1 + 2.2 * swing_m + 1.3 / rate_hz);
+        sum_mps += mean_mps;
+        ++reports;
+      }
+      check_near(Vector3(sum_mps / reports), velocity_mps, 0.06 + 1.3 / rate_hz);
+    }
+  }
+}
+
+void one_who_stands_or_is_no_person_has_no_mean_velocity(void**) {
+  Random random(7);
+  Scene standing, thing;
+  for (double t_s = 0.0; t_s < 4.0; t_s += 1.0 / 30.0) {
+    check_near(standing.send({hand(noise(random, 0.01))}, 1.0 / 30.0).mean_velocity_mps, Vector3::Zero(), 0.0);
+    check_near(thing.send({ball(1, Vector3(t_s, 0, 0))}, 1.0 / 30.0).mean_velocity_mps, Vector3::Zero(), 0.0);
+  }
+}
+
+void another_person_under_the_same_id_has_no_mean_velocity(void**) {
+  Scene scene;
+  for (double t_s = 0.0; t_s < 2.0; t_s += 0.02) scene.send({hand(Vector3(t_s, 0, 0))}, 0.02);
+  check_near(scene.send({hand(Vector3(-1.0, 0, 0))}, 0.02).mean_velocity_mps, Vector3::Zero(), 0.0);
+}
+
 void nothing_is_allocated_for_the_largest_set(void**) {
   Scene scene;
   std::vector<Obstacle> all;
@@ -262,6 +306,9 @@ int main() {
       cmocka_unit_test(obstacles_are_matched_by_id_and_those_of_one_id_by_their_order),
       cmocka_unit_test(two_senders_may_alternate),
       cmocka_unit_test(reports_at_one_instant_or_of_a_bad_clock_give_finite_velocities),
+      cmocka_unit_test(the_mean_velocity_of_a_walker_is_that_of_its_body),
+      cmocka_unit_test(one_who_stands_or_is_no_person_has_no_mean_velocity),
+      cmocka_unit_test(another_person_under_the_same_id_has_no_mean_velocity),
       cmocka_unit_test(nothing_is_allocated_for_the_largest_set),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -4,6 +4,7 @@
 
 #include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
+#include "firmware/model/prediction.h"
 #include "firmware/model/proximity.h"
 #include "tests/support/check.h"
 #include "tests/support/closed_loop.h"

@@ -74,24 +74,6 @@ void a_target_keeps_its_velocity_for_a_second_and_then_rests(void**) {
   }
 }
 
-/// A capsule that moves and turns.
-void a_person_keeps_its_velocity_for_300_ms_and_then_rests(void**) {
-  Obstacle obstacle = capsule_obstacle(Vector3(1, 2, 3), Matrix3::Identity(), 0.05, 0.4);
-  obstacle.velocity_mps = Vector3(0.1, 0, 0);
-  obstacle.angular_velocity_radps = Vector3(0, 2.0, 0);
-  for (const double after_s : {0.0, 0.1, 0.3, 0.5, 4.0}) {
-    for (const Kind kind : {Kind::kThing, Kind::kPerson}) {
-      obstacle.kind = kind;
-      const Obstacle then = predicted_obstacle(obstacle, after_s);
-      const double moving_s = kind == Kind::kPerson ? std::min(after_s, 0.3) : after_s, turn_rad = 2.0 * moving_s;
-      const Vector3 half_m = 0.2 * Vector3(std::sin(turn_rad), 0, std::cos(turn_rad));
-      const Vector3 centre_m = Vector3(1, 2, 3) + moving_s * obstacle.velocity_mps;
-      check_near(then.capsule.start, centre_m - half_m, 1e-12);
-      check_near(then.capsule.end, centre_m + half_m, 1e-12);
-    }
-  }
-}
-
 void the_tool_is_at_the_target_within_10_mm_and_a_twentieth_of_a_radian(void**) {
   const LinkPoses poses = forward_kinematics(test::lwa3(), test::home_rad());
   Target target;
@@ -206,6 +188,28 @@ void in_track_the_nearness_of_persons_costs_unless_their_separation_is_off(void*
   }
 }
 
+/// Of one who stands, but has walked up, an arm at its target knows the nearness to come.
+void a_rollout_has_a_person_walk_on_as_predicted(void**) {
+  for (const double towards_mps : {-0.4, 0.0, 0.4}) {
+    ClosedLoop loop = test::at_home("sidestep");
+    loop.model.settings.shield.person_weight = 1e-3;
+    loop.target.position_m = forward_kinematics(loop.model.arm, loop.arm.position_rad).tool_position;
+    loop.sends_target = true;
+    Obstacle& person = loop.add_sphere(loop.target.position_m + Vector3(1.0, 0, 0), Vector3::Zero(), 0.05);
+    person.kind = Kind::kPerson;
+    loop.run(2.0);
+    person.mean_velocity_mps = Vector3(-towards_mps, 0, 0);
+    const LinkPoses poses = forward_kinematics(loop.model.arm, loop.arm.position_rad);
+    const auto proximity_after = [&](double after_s) {
+      const Obstacle then = predicted_obstacle(person, after_s);
+      return person_proximity(poses, &then, 1);
+    };
+    double expected_s = 60.0 * proximity_after(6.0);
+    for (int i = 0; i < 300; ++i) expected_s += 20.0 * 0.01 * proximity_after(0.01 * i);
+    check_near_because(forecast_of(loop).proximity_s, expected_s, 0.1 * expected_s, "%g m/s", towards_mps);
+  }
+}
+
 /// The cost counts the whole horizon, although the arm rests soon and its simulation ends.
 void an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing(void**) {
   ClosedLoop loop = test::tracking("sidestep");
@@ -264,7 +268,6 @@ int main() {
       cmocka_unit_test(of_too_many_obstacles_a_snapshot_keeps_those_that_come_nearest_to_the_arm),
       cmocka_unit_test(a_snapshot_keeps_the_nearest_obstacles_at_rest),
       cmocka_unit_test(a_target_keeps_its_velocity_for_a_second_and_then_rests),
-      cmocka_unit_test(a_person_keeps_its_velocity_for_300_ms_and_then_rests),
       cmocka_unit_test(the_tool_is_at_the_target_within_10_mm_and_a_twentieth_of_a_radian),
       cmocka_unit_test(a_rollout_with_a_clear_path_arrives_at_the_cost_of_the_time_it_takes),
       cmocka_unit_test(the_near_future_is_forecast_as_it_comes),
@@ -272,6 +275,7 @@ int main() {
       cmocka_unit_test(a_rollout_meets_an_obstacle_that_comes_too_fast),
       cmocka_unit_test(a_rollout_does_not_meet_a_person_who_is_far_away),
       cmocka_unit_test(in_track_the_nearness_of_persons_costs_unless_their_separation_is_off),
+      cmocka_unit_test(a_rollout_has_a_person_walk_on_as_predicted),
       cmocka_unit_test(at_a_pose_at_rest_an_arm_that_turns_in_place_costs_half),
       cmocka_unit_test(an_arm_that_is_stuck_costs_the_whole_horizon_and_one_that_arrived_nothing),
       cmocka_unit_test(an_arm_at_rest_still_expects_an_obstacle_that_comes_late),
