@@ -30,9 +30,9 @@ constexpr double kLeastSpeed_mps = 0.02;
 /// A row that is violated by less is met.
 constexpr double kViolated_mps = 1e-4;
 
-/// The hard rows of two links are multiplied by it, so that they are granted 1/64 of the slack (constraint_rows.h). A
+/// The hard rows of two links are multiplied by it, so that they are granted 1/512 of the slack (constraint_rows.h). A
 /// power of two: nothing is rounded.
-constexpr double kLinksWeight = 64.0;
+constexpr double kLinksWeight = 512.0;
 
 /// The least value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {

@@ -21,8 +21,9 @@ namespace sidestep {
 ///   1/2 sum over joints j of |a_j| * acceleration limit_j. The other half is left for other rows.
 ///   For a pair of links with the clearance c, r = d - c; 0 if d is from c / 2 to c, and d - c / 2 below; k = 1, and v
 ///   is the speed at which joints outside the chain (another arm, a lift) bring the two together. Row and b are
-///   multiplied by 64: where an obstacle's approach cannot be met and the slack is shared, links yield by 1/64 of the
-///   speed by which obstacles do. A pair of links has about 1 mm of clearance, an obstacle 20 mm.
+///   multiplied by 512: where an obstacle's approach cannot be met and the slack is shared, links yield by 1/512 of the
+///   speed by which obstacles do. A pair of links has about 1 mm of clearance, an obstacle 20 mm. Of the 3 m/s that
+///   an obstacle may demand links then yield 6 mm/s, which hard_gain stops 0.4 mm below c / 2.
 ///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
 ///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
 ///   obstacle's speed does not count in these. So have two links whose distance is less than 30 mm above c.

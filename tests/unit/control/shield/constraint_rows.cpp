@@ -346,8 +346,8 @@ void turning_links_have_hard_rows_for_the_next_points(void**) {
   check(seen > 300, "only %d", seen);
 }
 
-void rows_of_self_pairs_are_64_times_the_gradients_of_their_distances(void**) {
-  const double weight = 64.0;
+void rows_of_self_pairs_are_512_times_the_gradients_of_their_distances(void**) {
+  const double weight = 512.0;
   const std::vector<SelfPair> pairs = find_self_pairs(lwa3(), 0.02).kept;
   Random random(5);
   int seen = 0;
@@ -493,7 +493,7 @@ int main() {
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),
       cmocka_unit_test(turning_links_have_hard_rows_for_the_next_points),
-      cmocka_unit_test(rows_of_self_pairs_are_64_times_the_gradients_of_their_distances),
+      cmocka_unit_test(rows_of_self_pairs_are_512_times_the_gradients_of_their_distances),
       cmocka_unit_test(the_links_with_the_least_room_are_reported_and_limit_what_brings_them_together),
       cmocka_unit_test(only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped),
   };

@@ -253,6 +253,7 @@ void the_worst_hard_row_has_the_least_possible_slack(void**) {
   for (long trial = 0; trial < states() / 40; ++trial) {
     randomise(scene, random);
     const ShieldResult given = scene.shielded();
+    check(!given.failed, "state %ld: the solver failed", trial);
     check_least_slack(scene, given, random, trial);
     if (given.hard_slack_mps > 0.01) ++has_slack;
   }
