@@ -56,6 +56,7 @@ void ObstacleMemory::remember_change(RememberedObstacle before, const Obstacle& 
   if (jumped) {
     before.obstacle.velocity_mps.setZero();
     before.obstacle.angular_velocity_radps.setZero();
+    before.obstacle.mean_velocity_mps.setZero();
   }
   remember(before);
 }

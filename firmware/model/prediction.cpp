@@ -90,12 +90,16 @@ double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* o
     const int last_body = last_body_to_keep_clear(arm, poses, obstacle.id);
     if (last_body < 0) continue;
     const double allowed_m = allowance_m ? allowance_m[o] : 0.0, below_m = least_m - allowed_m;
+    const bool is_predicted = predicts_persons && obstacle.kind == Kind::kPerson;
     const auto later = [&] {
-      const bool is_predicted = predicts_persons && obstacle.kind == Kind::kPerson;
       return is_predicted ? predicted_obstacle(obstacle, after_s) : extrapolated(obstacle, after_s);
     };
+    // Most obstacles are spheres, and a copy of each would take as long as all the rest.
+    const auto centre_later = [&]() -> Vector3 {
+      return is_predicted ? later().capsule.start : capsule.start + obstacle.velocity_mps * after_s;
+    };
     const double found_m = capsule.is_sphere()
-                               ? nearest_to_sphere_m(links, last_body, later().capsule.start, capsule.radius_m, below_m)
+                               ? nearest_to_sphere_m(links, last_body, centre_later(), capsule.radius_m, below_m)
                                : nearest_to_long_m(links, last_body, later(), below_m);
     if (found_m < below_m) least_m = found_m + allowed_m;
   }
