@@ -99,9 +99,10 @@ Vector3 MotionEstimator::lead_mps(const Report& velocity_mps, History& velocitie
 }
 
 Vector3 MotionEstimator::mean_velocity_mps(const Obstacle& obstacle, Track& track, double now_s) {
-  if (obstacle.kind != Kind::kPerson) return Vector3::Zero();
+  const bool is_person = obstacle.kind == Kind::kPerson;
   const Vector3 position_m = obstacle.capsule.centre();
-  if (track.centre.began()) track.mean_position_m = position_m;
+  if (!is_person || track.centre.began()) track.mean_position_m = position_m;  // a thing may become a person
+  if (!is_person) return Vector3::Zero();
   const double weight = 1.0 - std::exp(-(now_s - track.reported_s) / kMean_s);
   track.mean_position_m += weight * (position_m - track.mean_position_m);
   const Vector3 velocity_mps = (position_m - track.mean_position_m) / kMean_s;

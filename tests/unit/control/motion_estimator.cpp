@@ -273,6 +273,14 @@ void one_who_stands_or_is_no_person_has_no_mean_velocity(void**) {
   }
 }
 
+void a_thing_that_becomes_a_person_has_no_mean_velocity_at_first(void**) {
+  Scene scene;
+  const Vector3 place_m(1, 2, 1);
+  for (double t_s = 0.0; t_s < 1.0; t_s += 0.02) scene.send({ball(1, place_m)}, 0.02);
+  for (double t_s = 0.0; t_s < 1.0; t_s += 0.02)
+    check_near(scene.send({hand(place_m)}, 0.02).mean_velocity_mps, Vector3::Zero(), 0.0);
+}
+
 void another_person_under_the_same_id_has_no_mean_velocity(void**) {
   Scene scene;
   for (double t_s = 0.0; t_s < 2.0; t_s += 0.02) scene.send({hand(Vector3(t_s, 0, 0))}, 0.02);
@@ -308,6 +316,7 @@ int main() {
       cmocka_unit_test(reports_at_one_instant_or_of_a_bad_clock_give_finite_velocities),
       cmocka_unit_test(the_mean_velocity_of_a_walker_is_that_of_its_body),
       cmocka_unit_test(one_who_stands_or_is_no_person_has_no_mean_velocity),
+      cmocka_unit_test(a_thing_that_becomes_a_person_has_no_mean_velocity_at_first),
       cmocka_unit_test(another_person_under_the_same_id_has_no_mean_velocity),
       cmocka_unit_test(nothing_is_allocated_for_the_largest_set),
   };
