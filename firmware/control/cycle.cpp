@@ -101,6 +101,7 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
   ShieldInput shield_input{model.arm,
                            input.poses,
                            input.position_rad,
+                           state.stream.position_rad,
                            state.stream.velocity_radps,
                            input.clearance,
                            input.obstacles,

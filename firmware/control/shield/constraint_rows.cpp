@@ -27,6 +27,9 @@ constexpr double kNearLinks_m = 0.03;
 /// A link that can leave a person only more slowly has no row for it.
 constexpr double kLeastSpeed_mps = 0.02;
 
+/// The longest time by which an arm is assumed to lag behind its command.
+constexpr double kLongestLag_s = 0.1;
+
 /// A row that is violated by less is met.
 constexpr double kViolated_mps = 1e-4;
 
@@ -121,6 +124,7 @@ class RowMaker {
       : settings_(settings),
         input_(input),
         axes_(input.poses),
+        ahead_rad_(input.commanded_rad - input.position_rad),
         braking_s_(braking_s(input)),
         sustainable_(sustainable),
         range_(range),
@@ -136,7 +140,8 @@ class RowMaker {
     const Proximity pair = measure_pair(first, second);
     const JointVector row = row_of_links(a, b, pair);
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
-    const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(pair.distance_m, self.clearance_m),
+    const double next_m = pair.distance_m - still_to_come_m(row);
+    const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(next_m, self.clearance_m),
                                       pair.normal.dot(closing_mps), kLinksWeight);
     add_turning(self, pair, first, second);
     rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
@@ -161,7 +166,7 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, least, distance_m - required_m(pair), threat_mps);
+    add_hard(row, least, distance_m - still_to_come_m(row) - required_m(pair), threat_mps);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -178,7 +183,8 @@ class RowMaker {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
       const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
-      add_hard(row, least_mps(row, sustainable_), next.distance_m - required_m(pair), std::min(approaching_mps, 0.0));
+      const double room_m = next.distance_m - still_to_come_m(row) - required_m(pair);
+      add_hard(row, least_mps(row, sustainable_), room_m, std::min(approaching_mps, 0.0));
     }
   }
 
@@ -224,7 +230,8 @@ class RowMaker {
     if (turn_rad.norm() < kLeastTurn_rad) return;
     for (const Proximity& next : proximities_after_turn(first, second, pair, turn_rad)) {
       const JointVector row = row_of_links(first.shape, second.shape, next);
-      add_hard(row, least_mps(row, sustainable_), self_room_m(next.distance_m, self.clearance_m), 0.0, kLinksWeight);
+      const double next_m = next.distance_m - still_to_come_m(row);
+      add_hard(row, least_mps(row, sustainable_), self_room_m(next_m, self.clearance_m), 0.0, kLinksWeight);
     }
   }
 
@@ -233,6 +240,12 @@ class RowMaker {
     JointVector row = axes_.row(a.body, pair.on_arm, pair.normal);
     row -= axes_.row(b.body, pair.on_obstacle, pair.normal);
     return row;
+  }
+  /// How much nearer a pair comes until the arm has reached its last command, m. An arm that is at rest at some
+  /// distance from its command stays there.
+  double still_to_come_m(const JointVector& row) const {
+    const double closing_mps = std::max(0.0, -row.dot(input_.last_velocity_radps));
+    return std::clamp(-row.dot(ahead_rad_), 0.0, kLongestLag_s * closing_mps);
   }
   const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
 
@@ -304,6 +317,7 @@ class RowMaker {
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const JointAxes axes_;
+  const JointVector ahead_rad_;  ///< of the command, from the measured position
   const double braking_s_;
   const VelocityRange& sustainable_;
   const VelocityRange& range_;

@@ -15,6 +15,7 @@ struct ShieldInput {
   const Arm& arm;
   const LinkPoses& poses;
   const JointVector& position_rad;         ///< measured
+  const JointVector& commanded_rad;        ///< the position that was commanded last
   const JointVector& last_velocity_radps;  ///< last commanded
   const Clearance& clearance;
   const ObstacleView& obstacles;

@@ -32,22 +32,22 @@ VelocityRange range_of(double radps) {
 
 /// A configuration among obstacles, and its constraint rows.
 struct Scene {
-  JointVector q_rad, last_radps = JointVector::Zero(7), nominal_radps = JointVector::Zero(7);
+  JointVector q_rad, commanded_rad, last_radps = JointVector::Zero(7), nominal_radps = JointVector::Zero(7);
   LinkPoses poses;
   std::unique_ptr<ObstacleSet> set = std::make_unique<ObstacleSet>();
   Clearance clearance;
   std::vector<SelfPair> self_pairs;
   double person_weight = 0.0;
 
-  explicit Scene(const JointVector& q) : q_rad(q), poses(forward_kinematics(lwa3(), q)) {
+  explicit Scene(const JointVector& q) : q_rad(q), commanded_rad(q), poses(forward_kinematics(lwa3(), q)) {
     for (const LinkShape& shape : lwa3().shapes) clearance.links.add(transformed(poses, shape));
   }
 
   void add(const Obstacle& obstacle) { set->obstacles[static_cast<size_t>(set->count++)] = obstacle; }
   RowSets row_sets(const VelocityRange& sustainable, const VelocityRange& range) const {
     const ObstacleView view{set.get(), 0.0, 0.0};
-    const ShieldInput now{lwa3(),     poses,      q_rad, last_radps, clearance, view,
-                          self_pairs, last_radps, 0.01,  1.0,        0.0,       person_weight};
+    const ShieldInput now{lwa3(),     poses,      q_rad, commanded_rad, last_radps, clearance,    view,
+                          self_pairs, last_radps, 0.01,  1.0,           0.0,        person_weight};
     return make_rows(kSettings, now, sustainable, range, nominal_radps);
   }
   ConstraintRows rows(const VelocityRange& range, bool hard_only = false) const {
@@ -176,6 +176,35 @@ void the_bounds_of_distance_rows_are_barriers(void**) {
     check_near(rows[0].bound, hard_bound(rows[0].row, d - kSettings.rest_clearance_m), 1e-9);
     check_near(rows[1].bound, std::min(3.0, -kSettings.comfort_gain_per_s * (d - kSettings.comfort_clearance_m)), 1e-9);
   }
+}
+
+/// What the arm still approaches until it has reached its last command counts as gone, at most what 0.1 s at the last
+/// velocity makes: an arm at rest beside its command stays there.
+void a_command_ahead_of_the_arm_takes_room_from_what_it_approaches(void**) {
+  Random random(13);
+  int less = 0, capped = 0, same = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    obstacle.velocity_mps.setZero();
+    obstacle.kind = Kind::kPerson;  // needs the same clearance from a link of any speed
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
+    if (pair.now.distance_m > kSettings.range_m || !joints_matter(jacobian.transpose() * pair.now.normal)) continue;
+    for (int i = 0; i < 7; ++i) {
+      scene.commanded_rad[i] += random.uniform(-0.1, 0.1);
+      scene.last_radps[i] = random.uniform(-1, 1);
+    }
+    const JointVector row = scene.rows_of(pair)[0].row;
+    const double ahead_m = -row.dot(scene.commanded_rad - scene.q_rad), fastest_m = -0.1 * row.dot(scene.last_radps);
+    const double taken_m = std::max(0.0, std::min(ahead_m, fastest_m));
+    ++(taken_m == 0.0 ? same : taken_m == ahead_m ? less : capped);
+    const double room_m = pair.now.distance_m - taken_m - kSettings.hard_clearance_m;
+    check_near(scene.rows_of(pair)[0].bound, hard_bound(row, room_m), 1e-9);
+  }
+  check(less > 30 && capped > 30 && same > 100, "%d less, %d capped, %d the same", less, capped, same);
 }
 
 /// In place of comfort: the barrier of persons, less of it from a slow link, and no more than it can do, weighed.
@@ -488,6 +517,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(distance_rows_are_the_gradients_of_the_distances),
       cmocka_unit_test(the_bounds_of_distance_rows_are_barriers),
+      cmocka_unit_test(a_command_ahead_of_the_arm_takes_room_from_what_it_approaches),
       cmocka_unit_test(a_person_has_a_row_of_separation),
       cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),

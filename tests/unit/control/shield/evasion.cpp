@@ -53,6 +53,7 @@ struct Scene {
     return {model().arm,
             poses,
             q_rad,
+            q_rad,
             rest,
             clearance,
             view,

@@ -52,6 +52,7 @@ struct Scene {
     return {model().arm,
             poses,
             q_rad,
+            q_rad,
             last_radps,
             clearance,
             view,

@@ -261,6 +261,7 @@ void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void*
       const ShieldInput around{model.arm,
                                poses,
                                q_rad,
+                               q_rad,
                                last_radps,
                                clearance,
                                view,
