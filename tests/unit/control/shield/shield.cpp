@@ -49,18 +49,9 @@ struct Scene {
     range = velocity_range(model().arm.limits, q_rad, q_rad, last_radps, kPeriod_s);
   }
   ShieldInput input() const {
-    return {model().arm,
-            poses,
-            q_rad,
-            q_rad,
-            last_radps,
-            clearance,
-            view,
-            model().self_pairs,
-            evasion_radps,
-            kPeriod_s,
-            comfort_weight,
-            model().settings.shield.tool_weight};
+    return {model().arm,   poses,     q_rad,          q_rad,
+            last_radps,    clearance, view,           model().self_pairs,
+            evasion_radps, kPeriod_s, comfort_weight, model().settings.shield.tool_weight};
   }
   ShieldResult shielded() const {
     return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);

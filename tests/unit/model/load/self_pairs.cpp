@@ -258,18 +258,9 @@ void a_nominal_velocity_that_folds_the_arm_onto_itself_leads_to_no_contact(void*
       check(least_m >= 0.0, "trial %d, cycle %d: %g m", trial, cycle, least_m);
       nearest_m = std::min(nearest_m, least_m);
       const Clearance clearance = measure_clearance(model.arm, poses, view, {0.0, 0.0});
-      const ShieldInput around{model.arm,
-                               poses,
-                               q_rad,
-                               q_rad,
-                               last_radps,
-                               clearance,
-                               view,
-                               model.self_pairs,
-                               last_radps,
-                               0.01,
-                               1.0,
-                               model.settings.shield.tool_weight};
+      const ShieldInput around{model.arm,  poses,     q_rad, q_rad,
+                               last_radps, clearance, view,  model.self_pairs,
+                               last_radps, 0.01,      1.0,   model.settings.shield.tool_weight};
       last_radps = shield(model.settings.shield, around, sustainable_range(model.arm.limits, q_rad, q_rad, kPeriod_s),
                           velocity_range(model.arm.limits, q_rad, q_rad, last_radps, kPeriod_s),
                           tool_jacobian(poses, 3), nominal_radps)
