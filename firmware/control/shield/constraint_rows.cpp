@@ -124,7 +124,7 @@ class RowMaker {
       : settings_(settings),
         input_(input),
         axes_(input.poses),
-        ahead_rad_(input.commanded_rad - input.position_rad),
+        following_error_rad_(input.commanded_rad - input.position_rad),
         braking_s_(braking_s(input)),
         sustainable_(sustainable),
         range_(range),
@@ -140,9 +140,7 @@ class RowMaker {
     const Proximity pair = measure_pair(first, second);
     const JointVector row = row_of_links(a, b, pair);
     const Vector3 closing_mps = other_velocity(b, pair.on_obstacle) - other_velocity(a, pair.on_arm);
-    const double next_m = pair.distance_m - still_to_come_m(row);
-    const double bound_mps = add_hard(row, least_mps(row, sustainable_), self_room_m(next_m, self.clearance_m),
-                                      pair.normal.dot(closing_mps), kLinksWeight);
+    const double bound_mps = add_links(row, pair.distance_m, self.clearance_m, pair.normal.dot(closing_mps));
     add_turning(self, pair, first, second);
     rows_.links_limit |= row.dot(nominal_radps) < bound_mps - kViolated_mps;
     const double room_m = pair.distance_m - self.clearance_m;
@@ -166,7 +164,7 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, least, distance_m - still_to_come_m(row) - required_m(pair), threat_mps);
+    add_hard(row, least, distance_m - lag_m(row) - required_m(pair), threat_mps);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -183,7 +181,7 @@ class RowMaker {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
       const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
-      const double room_m = next.distance_m - still_to_come_m(row) - required_m(pair);
+      const double room_m = next.distance_m - lag_m(row) - required_m(pair);
       add_hard(row, least_mps(row, sustainable_), room_m, std::min(approaching_mps, 0.0));
     }
   }
@@ -230,8 +228,7 @@ class RowMaker {
     if (turn_rad.norm() < kLeastTurn_rad) return;
     for (const Proximity& next : proximities_after_turn(first, second, pair, turn_rad)) {
       const JointVector row = row_of_links(first.shape, second.shape, next);
-      const double next_m = next.distance_m - still_to_come_m(row);
-      add_hard(row, least_mps(row, sustainable_), self_room_m(next_m, self.clearance_m), 0.0, kLinksWeight);
+      add_links(row, next.distance_m, self.clearance_m, 0.0);
     }
   }
 
@@ -241,11 +238,11 @@ class RowMaker {
     row -= axes_.row(b.body, pair.on_obstacle, pair.normal);
     return row;
   }
-  /// How much nearer a pair comes until the arm has reached its last command, m. An arm that is at rest at some
-  /// distance from its command stays there.
-  double still_to_come_m(const JointVector& row) const {
+  /// The part of the following error that closes a pair, m: how much nearer it comes until the arm has reached its last
+  /// command. An arm that is at rest beside its command stays there.
+  double lag_m(const JointVector& row) const {
     const double closing_mps = std::max(0.0, -row.dot(input_.last_velocity_radps));
-    return std::clamp(-row.dot(ahead_rad_), 0.0, kLongestLag_s * closing_mps);
+    return std::clamp(-row.dot(following_error_rad_), 0.0, kLongestLag_s * closing_mps);
   }
   const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
 
@@ -299,6 +296,11 @@ class RowMaker {
     if (violation_mps > 0.0) step_.add(weight * row, weight * bound_mps, Tier::kHard, violation_mps);
     return bound_mps;
   }
+  /// Hard row of two links. Returns the bound.
+  double add_links(const JointVector& row, double distance_m, double clearance_m, double closing_mps) {
+    const double room_m = self_room_m(distance_m - lag_m(row), clearance_m);
+    return add_hard(row, least_mps(row, sustainable_), room_m, closing_mps, kLinksWeight);
+  }
   void add_plan(const JointVector& row, double least, double bound_mps, Tier tier, double other_bound_mps = 0.0) {
     bound_mps = std::min(bound_mps, kLargestDemand_mps);
     if (bound_mps > least) plan_.add(row, bound_mps, tier, bound_mps - least, other_bound_mps);
@@ -317,7 +319,7 @@ class RowMaker {
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const JointAxes axes_;
-  const JointVector ahead_rad_;  ///< of the command, from the measured position
+  const JointVector following_error_rad_;  ///< commanded - measured position
   const double braking_s_;
   const VelocityRange& sustainable_;
   const VelocityRange& range_;

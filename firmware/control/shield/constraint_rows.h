@@ -11,8 +11,8 @@ namespace sidestep {
 /// the speed at which the obstacle approaches. Then d' = a q' - v. m is the least distance predicted for the next
 /// pass_horizon at constant velocity, t its time. Gains and clearances are those of ShieldSettings.
 ///
-/// hard: with r = d - e - c, c the clearance that the obstacle needs (required_clearance.h) and e what the pair still
-/// approaches until the arm has reached its last command, b is the larger of b1 and b2:
+/// hard: with r = d - e - c, c the clearance that the obstacle needs (required_clearance.h) and e the part of the
+/// following error that closes the pair, b is the larger of b1 and b2:
 ///     b1 = k v - hard_gain r            the clearance decays at most exponentially
 ///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0. The speed of an approaching
 ///                                       obstacle does not count here, that of a receding one does
@@ -20,8 +20,8 @@ namespace sidestep {
 ///   linearly from 1 to 0 while m rises from hard_clearance to pass_clearance: an obstacle that will pass is no threat.
 ///   v_stop(r) is the largest speed that can be braked within r, one period of travel included, at the deceleration
 ///   1/2 sum over joints j of |a_j| * acceleration limit_j. The other half is left for other rows.
-///   e = -a (commanded - measured position), from 0 to 0.1 s times the speed of approach at the last velocity: an arm
-///   at rest beside its command stays there.
+///   e = -a (commanded - measured position), within 0 and 0.1 s times the closing speed at the last commanded velocity:
+///   the pair comes nearer by e until the arm has reached its last command, unless the arm rests beside it.
 ///   For a pair of links with the clearance c, r = d - e - c; 0 if d - e is from c / 2 to c, and d - e - c / 2 below;
 ///   k = 1, and v is the speed at which joints outside the chain (another arm, a lift) bring the two together. Row and
 ///   b are multiplied by 512: where an obstacle's approach cannot be met and the slack is shared, links yield by 1/512

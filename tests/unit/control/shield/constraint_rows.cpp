@@ -178,8 +178,8 @@ void the_bounds_of_distance_rows_are_barriers(void**) {
   }
 }
 
-/// What the arm still approaches until it has reached its last command counts as gone, at most what 0.1 s at the last
-/// velocity makes: an arm at rest beside its command stays there.
+/// The part of the following error that closes the pair is taken from its room, at most 0.1 s times the closing speed:
+/// an arm at rest beside its command stays there.
 void a_command_ahead_of_the_arm_takes_room_from_what_it_approaches(void**) {
   Random random(13);
   int less = 0, capped = 0, same = 0;
