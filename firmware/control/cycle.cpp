@@ -113,6 +113,9 @@ JointVector apply_shield(const Model& model, const LawInput& input, const Veloci
                            separation,
                            !moves(mode)};
   shield_input.tool_weight *= tool_weight_share(settings.shield, input, mode, keeps_separation(shield_input));
+  // In a posture each joint has its own goal, and an arm that is to stop is at rest sooner where each brakes as it can.
+  const bool tool_has_task = mode == Mode::kTrack && !input.target.is_posture();
+  if (tool_has_task) shield_input.step_tool_weight = shield_input.tool_weight;
   const double turn_weight = turn_weight_m(moving_share(input.target, mode));
   const ShieldResult safe = shield(settings.shield, shield_input, input.sustainable, range,
                                    weighted_task(input.tool_jacobian, turn_weight), nominal_radps);

@@ -12,7 +12,9 @@ ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, co
   const QpSolution nearest = solve(rows.plan, sustainable, to_nominal);
   const Plan plan = evade(settings, input, rows.plan, sustainable, to_nominal, nearest.velocity_radps);
 
-  const QpObjective to_plan{plan.velocity_radps, tool_jacobian, 0.0, input.comfort_weight, scale};
+  const bool clearance_first = plan.evading || rows.step.size() > 0;
+  const double step_tool_weight = clearance_first ? 0.0 : input.step_tool_weight;
+  const QpObjective to_plan{plan.velocity_radps, tool_jacobian, step_tool_weight, input.comfort_weight, scale};
   const QpSolution safe = solve(rows.step, range, to_plan);
   return {safe.velocity_radps, safe.hard_slack_mps, nearest.failed || safe.failed, plan,
           rows.nearest_links,  rows.links_limit};

@@ -22,10 +22,11 @@ struct ShieldInput {
   const std::vector<SelfPair>& self_pairs;
   const JointVector& evasion_radps;  ///< the evasion chosen in the previous cycle; size 0: none
   double period_s;
-  double comfort_weight;       ///< weight of the comfort tier in this cycle, s2/m2
-  double tool_weight;          ///< w in this cycle, 1/m2
-  double person_weight = 0.0;  ///< of the separation from persons in this cycle; 0: comfort as from anything else
-  bool is_stopping = false;    ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
+  double comfort_weight;          ///< weight of the comfort tier in this cycle, s2/m2
+  double tool_weight;             ///< w in this cycle, 1/m2
+  double person_weight = 0.0;     ///< of the separation from persons in this cycle; 0: comfort as from anything else
+  bool is_stopping = false;       ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
+  double step_tool_weight = 0.0;  ///< w of the second programme, 1/m2; 0: the joints follow the plan one by one
 };
 
 /// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
@@ -80,7 +81,9 @@ struct ShieldResult {
 ///
 /// Two programmes a cycle. The first gives the plan: all three tiers, within `sustainable`. Evasion may replace this
 /// plan, and solves further programmes for it (evasion.h). The second programme gives the velocity of the coming
-/// period: u is the plan, w = 0, only the hard tier, within `range`, which includes the acceleration limits.
+/// period: u is the plan, only the hard tier, within `range`, which includes the acceleration limits. Where these keep
+/// some joints from the plan, the others make up for it, so that the tool moves as planned: w is step_tool_weight.
+/// It is 0 for an evasion, which would begin later, and where there are hard rows, which would be met less exactly.
 ///
 /// Every programme has a solution because of the slacks. If the solver nevertheless fails, rest takes the place of the
 /// solution (shield_qp.h).

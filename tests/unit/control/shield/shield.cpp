@@ -34,6 +34,7 @@ struct Scene {
   ObstacleSet& set;  // large
   double comfort_weight = 300.0;
   int task_rows = 3;
+  double step_tool_weight = 0.0;
   LinkPoses poses{};
   ObstacleView view{};
   Clearance clearance{};
@@ -49,9 +50,11 @@ struct Scene {
     range = velocity_range(model().arm.limits, q_rad, q_rad, last_radps, kPeriod_s);
   }
   ShieldInput input() const {
-    return {model().arm,   poses,     q_rad,          q_rad,
-            last_radps,    clearance, view,           model().self_pairs,
-            evasion_radps, kPeriod_s, comfort_weight, model().settings.shield.tool_weight};
+    ShieldInput input = {model().arm,   poses,     q_rad,          q_rad,
+                         last_radps,    clearance, view,           model().self_pairs,
+                         evasion_radps, kPeriod_s, comfort_weight, model().settings.shield.tool_weight};
+    input.step_tool_weight = step_tool_weight;
+    return input;
   }
   ShieldResult shielded() const {
     return shield(model().settings.shield, input(), sustainable, range, tool_jacobian(poses, task_rows), nominal_radps);
@@ -139,6 +142,7 @@ void randomise(Scene& scene, Random& random) {
   scene.evasion_radps = random.chance(0.5) ? random.joints(7, -2, 2) : JointVector();
   scene.comfort_weight = random.chance(0.5) ? 300.0 : 1.0;
   scene.task_rows = random.chance(0.5) ? 3 : 6;
+  scene.step_tool_weight = random.chance(0.5) ? model().settings.shield.tool_weight : 0.0;
   scene.view = {&scene.set, random.uniform(0, 0.1), random.chance(0.1) ? random.uniform(0, 0.5) : 0.0};
   scene.measure();
 }
@@ -275,6 +279,61 @@ void without_obstacles_a_nominal_velocity_within_range_is_unchanged(void**) {
     ++unchanged;
   }
   check(unchanged > 300, "only %d", unchanged);
+}
+
+/// How far a velocity is from the plan: of the joints, and of the tool with its weight.
+double deviation(const Scene& scene, const JointVector& plan_radps, const JointVector& velocity_radps) {
+  const JointVector change = velocity_radps - plan_radps;
+  const double tool = (tool_jacobian(scene.poses, scene.task_rows) * change).squaredNorm();
+  return change.squaredNorm() + scene.step_tool_weight * tool;
+}
+
+/// Where the acceleration limits keep joints from the plan, the velocity is the nearest to it, the tool's included:
+/// none of many others within the range is nearer. Without that weight it is the plan, joint by joint within the range.
+void joints_make_up_for_those_that_reach_their_acceleration_limits(void**) {
+  Random random(14);
+  Scene scene{{}, {}, {}, empty_set()};
+  int improved = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    randomise(scene, random);
+    scene.set.count = 0;
+    scene.nominal_radps = random.joints(7, -1, 1);
+    scene.measure();
+    if (scene.hard_rows().size() > 0) continue;
+    const ShieldResult given = scene.shielded();
+    const JointVector& plan_radps = given.plan.velocity_radps;
+    const JointVector clipped_radps = plan_radps.cwiseMax(scene.range.lower_radps).cwiseMin(scene.range.upper_radps);
+    if (scene.step_tool_weight == 0.0) {
+      check_near_because(given.velocity_radps, clipped_radps, 1e-9, "state %d", trial);
+      continue;
+    }
+    const double given_deviation = deviation(scene, plan_radps, given.velocity_radps);
+    improved += given_deviation < 0.9 * deviation(scene, plan_radps, clipped_radps);
+    for (int i = 0; i < 100; ++i) {
+      const double step_radps = std::pow(10.0, random.uniform(-4, 0));
+      const JointVector near_radps = given.velocity_radps + random.joints(7, -step_radps, step_radps);
+      const JointVector other_radps = near_radps.cwiseMax(scene.range.lower_radps).cwiseMin(scene.range.upper_radps);
+      check(given_deviation <= deviation(scene, plan_radps, other_radps) + 1e-9, "state %d", trial);
+    }
+  }
+  check(improved > 100, "only %d", improved);
+}
+
+/// With hard rows, or where evasion replaced the plan, the tool's weight changes nothing.
+void the_tool_of_the_coming_period_counts_less_than_clearance(void**) {
+  Random random(15);
+  Scene scene{{}, {}, {}, empty_set()};
+  int equal = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    randomise(scene, random);
+    scene.step_tool_weight = 0.0;
+    const ShieldResult without = scene.shielded();
+    if (scene.hard_rows().size() == 0 && !without.plan.evading) continue;
+    scene.step_tool_weight = model().settings.shield.tool_weight;
+    check_near_because(scene.shielded().velocity_radps, without.velocity_radps, 0.0, "state %d", trial);
+    ++equal;
+  }
+  check(equal > 500, "only %d", equal);
 }
 
 /// Gradient of a link's distance to the first obstacle by the joints, m/rad.
@@ -455,6 +514,8 @@ int main() {
       cmocka_unit_test(in_any_state_the_velocity_is_within_range_and_computed_within_a_period),
       cmocka_unit_test(the_worst_hard_row_has_the_least_possible_slack),
       cmocka_unit_test(without_obstacles_a_nominal_velocity_within_range_is_unchanged),
+      cmocka_unit_test(joints_make_up_for_those_that_reach_their_acceleration_limits),
+      cmocka_unit_test(the_tool_of_the_coming_period_counts_less_than_clearance),
       cmocka_unit_test(an_arm_driven_toward_a_static_obstacle_stops_before_it),
       cmocka_unit_test(in_contact_the_distance_only_grows),
       cmocka_unit_test(between_two_obstacles_the_slack_is_the_least_possible),
