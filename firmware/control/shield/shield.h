@@ -83,8 +83,8 @@ struct ShieldResult {
 /// plan, and solves further programmes for it (evasion.h). The second programme gives the velocity of the coming
 /// period: u is the plan, only the hard tier, within `range`, which includes the acceleration limits. Where these keep
 /// some joints from the plan, the others make up for it, so that the tool moves as planned: w is step_tool_weight.
-/// It is 0 for an evasion and for urgent pass rows, which would begin later, and where there are hard rows, which would
-/// be met less exactly.
+/// It is 0 for an evasion and where a pass row is urgent, because the arm would evade later, and where there are hard
+/// rows, which would be met less exactly.
 ///
 /// Every programme has a solution because of the slacks. If the solver nevertheless fails, rest takes the place of the
 /// solution (shield_qp.h).
