@@ -19,7 +19,7 @@ double guide_time_s(const Arm& arm, const Guide& guide, const JointVector& posit
                     double step_s, GuideProgress& progress) {
   if (progress.start_s != guide.time_s[0]) progress = {guide.time_s[0], 0.0};
   const JointVector deviation_rad = point_of(guide, now_s - progress.delay_s).position_rad - position_rad;
-  const double largest_rad = deviation_rad.cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff();
+  const double largest_rad = max_norm(deviation_rad, arm.joint_scale);
   const double rate = std::clamp((kLeft_rad - largest_rad) / (kLeft_rad - kFollows_rad), kLeastRate, 1.0);
   progress.delay_s += period_s - rate * step_s;
   return now_s - progress.delay_s;

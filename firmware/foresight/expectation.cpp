@@ -74,8 +74,7 @@ bool Expectation::arm_as_expected(const Snapshot& now, double after_s) const {
   const int points = forecast_.path_rad.size();
   if (points == 0) return false;
   const int point = std::clamp(static_cast<int>(std::lround(after_s / forecast_.period_s)) - 1, 0, points - 1);
-  return (now.arm.position_rad - forecast_.path_rad[point]).cwiseQuotient(joint_scale_).cwiseAbs().maxCoeff() <=
-         kArm_rad;
+  return max_norm(now.arm.position_rad - forecast_.path_rad[point], joint_scale_) <= kArm_rad;
 }
 
 bool Expectation::other_joints_as_expected(const Snapshot& now) const {

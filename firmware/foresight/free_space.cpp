@@ -133,7 +133,7 @@ bool FreeSpace::contains(const JointVector& q_rad) const {
 /// In the order of repeated bisection, which finds what is in the way early.
 bool FreeSpace::contains_way(const JointVector& from_rad, const JointVector& to_rad, int& checks_left) const {
   const JointVector way_rad = to_rad - from_rad;
-  const double length_rad = way_rad.cwiseQuotient(model_.arm.joint_scale).norm();
+  const double length_rad = euclidean_norm(way_rad, model_.arm.joint_scale);
   int parts = 1;
   while (length_rad > parts * kEdgeStep_rad) parts *= 2;
   for (int stride = parts; stride > 1; stride /= 2)

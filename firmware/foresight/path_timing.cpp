@@ -57,7 +57,7 @@ class Timing {
     const JointVector velocities = share * arm.limits.velocity_radps;
     for (int i = 1; i < path_rad.size(); ++i) {
       const JointVector way = path_rad[i] - path_rad[i - 1];
-      const double length = way.cwiseQuotient(arm.joint_scale).norm();
+      const double length = euclidean_norm(way, arm.joint_scale);
       const JointVector direction = way / length;
       const double fastest = std::min(largest_factor(velocities, direction),
                                       speed_for_tool(arm, path_rad[i - 1], path_rad[i], direction, fastest_mps));

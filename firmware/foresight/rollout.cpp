@@ -51,17 +51,8 @@ double away_share(const LinkPoses& poses, const Target& target, bool moves) {
   return moves ? share : kNotTurned + (1.0 - kNotTurned) * share;
 }
 
-/// By dt_s, to after_s from the beginning; as predicted_obstacle().
 void advance(ObstacleSet& set, double dt_s, double after_s) {
-  for (int i = 0; i < set.count; ++i) {
-    Obstacle& obstacle = set.obstacles[i];
-    if (obstacle.kind == Kind::kPerson && after_s > kPersonCoast_s) {
-      if (after_s > kPersonWalk_s) obstacle.mean_velocity_mps.setZero();
-      obstacle.velocity_mps = obstacle.mean_velocity_mps;
-      obstacle.angular_velocity_radps.setZero();
-    }
-    obstacle = extrapolated(obstacle, dt_s);
-  }
+  for (int i = 0; i < set.count; ++i) advance(set.obstacles[i], dt_s, after_s);
 }
 
 /// The integral of person_proximity() over the first kExposure_s.
@@ -109,12 +100,12 @@ bool is_at(const LinkPoses& poses, const Target& target) {
 }
 
 bool is_in_posture(const Arm& arm, const JointVector& q_rad, const Target& target) {
-  return (q_rad - target.posture_rad).cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff() <= kInPosture_rad;
+  return max_norm(q_rad - target.posture_rad, arm.joint_scale) <= kInPosture_rad;
 }
 
 bool is_same_posture(const Target& a, const Target& b, const JointVector& joint_scale) {
   if (!a.is_posture() || !b.is_posture()) return a.is_posture() == b.is_posture();
-  return (a.posture_rad - b.posture_rad).cwiseQuotient(joint_scale).cwiseAbs().maxCoeff() <= kSamePosture_rad;
+  return max_norm(a.posture_rad - b.posture_rad, joint_scale) <= kSamePosture_rad;
 }
 
 bool is_same_goal(const Target& a, const Target& b, const JointVector& joint_scale) {
@@ -140,7 +131,7 @@ Rollout::Rollout(const Model& model)
 /// and no obstacle within reach comes nearer. Away from the target, an obstacle that leaves may also move it.
 bool Rollout::stays_at_rest(const Snapshot& from, const Guide& guide, const LinkPoses& poses, const ArmState& arm,
                             double after_s, bool arrives) const {
-  if (arm.velocity_radps.cwiseQuotient(model_.arm.joint_scale).cwiseAbs().maxCoeff() > kRest_radps) return false;
+  if (max_norm(arm.velocity_radps, model_.arm.joint_scale) > kRest_radps) return false;
   if (guide.knots > 0 && from.now_s + after_s < guide.end_s()) return false;
   if (from.tracking && !is_at_rest(predicted_target(from.target, after_s))) return false;
   const auto *obstacles = obstacles_.obstacles.begin(), *end = obstacles + obstacles_.count;

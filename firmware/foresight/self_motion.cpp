@@ -19,10 +19,6 @@ constexpr double kFastestReturn_m = 0.025;
 constexpr int kMostParts = kMaxKnots - 1;  // of the path as a guide
 constexpr double kShortest_s = 1e-3;       // of a part, so that times of knots increase
 
-double largest(const Arm& arm, const JointVector& way_rad) {
-  return way_rad.cwiseQuotient(arm.joint_scale).cwiseAbs().maxCoeff();
-}
-
 /// The least factor by which a guide can be stretched in time so that it keeps the limits. The acceleration of a cubic
 /// is largest at an end; its velocity is looked at in the middle, too.
 double least_duration_s(const JointLimits& limits, double share, const Guide& guide) {
@@ -67,12 +63,12 @@ JointVector SelfMotion::step_rad(const JointVector& goal_rad) const {
 bool SelfMotion::reach(const JointVector& goal_rad) {
   while (!path_rad_.is_full()) {
     const JointVector q_rad = path_rad_[path_rad_.size() - 1];
-    if (largest(arm_, goal_rad - q_rad) < kStep_rad) {
+    if (max_norm(goal_rad - q_rad, arm_.joint_scale) < kStep_rad) {
       path_rad_.add(goal_rad);
       return true;
     }
     const JointVector step = step_rad(goal_rad);
-    if (largest(arm_, step) < kStalled_rad) return false;
+    if (max_norm(step, arm_.joint_scale) < kStalled_rad) return false;
     path_rad_.add(q_rad + step);
   }
   return false;

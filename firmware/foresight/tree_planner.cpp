@@ -121,7 +121,7 @@ void TreePlanner::find_goals() {
 }
 
 double TreePlanner::length_rad(const JointVector& from_rad, const JointVector& to_rad) const {
-  return (to_rad - from_rad).cwiseQuotient(model_.arm.joint_scale).norm();
+  return euclidean_norm(to_rad - from_rad, model_.arm.joint_scale);
 }
 
 int TreePlanner::nearest(const Tree& tree, const JointVector& q_rad) const {

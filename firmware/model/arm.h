@@ -42,6 +42,14 @@ struct SelfPair {
 /// inverse and in the shield's programme, and turns settings in rad, rad/s and rad/s2 into m, m/s and m/s2.
 constexpr double kPrismaticScale_m = 0.25;  // a power of two: multiplying by it is exact
 
+/// Norms of a joint vector, n x 1, in units of Arm::joint_scale: the largest component and the Euclidean norm.
+inline double max_norm(const JointVector& vector, const JointVector& joint_scale) {
+  return vector.cwiseQuotient(joint_scale).cwiseAbs().maxCoeff();
+}
+inline double euclidean_norm(const JointVector& vector, const JointVector& joint_scale) {
+  return vector.cwiseQuotient(joint_scale).norm();
+}
+
 /// A serial arm of n joints: the KDL chain from the base link to the tip link, and the same chain reduced to one frame
 /// per joint, which the control cycle uses.
 ///

@@ -80,6 +80,15 @@ Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s) {
   return later;
 }
 
+void advance(Obstacle& obstacle, double dt_s, double after_s) {
+  if (obstacle.kind == Kind::kPerson && after_s > kPersonCoast_s) {
+    if (after_s > kPersonWalk_s) obstacle.mean_velocity_mps.setZero();
+    obstacle.velocity_mps = obstacle.mean_velocity_mps;
+    obstacle.angular_velocity_radps.setZero();
+  }
+  obstacle = extrapolated(obstacle, dt_s);
+}
+
 double clearance_after(const Arm& arm, const LinkPoses& poses, const Obstacle* obstacles, int count, double after_s,
                        double enough_m, const double* allowance_m, bool predicts_persons) {
   const Links links = moving_links(arm, poses);

@@ -16,6 +16,9 @@ constexpr double kPersonWalk_s = 2.0;
 /// velocity until kPersonWalk_s, does not turn, and rests.
 Obstacle predicted_obstacle(const Obstacle& obstacle, double after_s);
 
+/// Takes an obstacle through the same motion in small steps: by dt_s, to after_s from the beginning.
+void advance(Obstacle& obstacle, double dt_s, double after_s);
+
 /// The least surface distance, m, between the moving links in one configuration, with what the tool holds, and `count`
 /// obstacles extrapolated by after_s; persons are predicted_obstacle() if predicts_persons. Allowed contacts
 /// (Attachments) do not count. Exact below enough_m; else enough_m is returned, without the exact computation. Where

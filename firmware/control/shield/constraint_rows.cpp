@@ -164,7 +164,7 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, least, distance_m - lag_m(row) - required_m(pair), threat_mps);
+    add_hard(row, least, room_m(row, distance_m, pair), threat_mps);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -181,8 +181,7 @@ class RowMaker {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
       const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
-      const double room_m = next.distance_m - lag_m(row) - required_m(pair);
-      add_hard(row, least_mps(row, sustainable_), room_m, std::min(approaching_mps, 0.0));
+      add_hard(row, least_mps(row, sustainable_), room_m(row, next.distance_m, pair), std::min(approaching_mps, 0.0));
     }
   }
 
@@ -267,6 +266,10 @@ class RowMaker {
   double required_m(const NearPair& pair) {
     const double obstacle_doubt = doubt(input_.obstacles, pair.now.obstacle);
     return hard_clearance_m(settings_, obstacle_doubt, obstacle_doubt < 1.0 ? link_speed_mps(pair.now.shape) : 0.0);
+  }
+  /// What is left of a pair's distance above the required clearance, m.
+  double room_m(const JointVector& row, double distance_m, const NearPair& pair) {
+    return distance_m - lag_m(row) - required_m(pair);
   }
   /// Of the fastest point of a link shape's axis, by the last commanded velocity, m/s.
   double link_speed_mps(int s) {
