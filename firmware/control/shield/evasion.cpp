@@ -17,6 +17,11 @@ constexpr double kAfter_s = 0.2;     // of a rollout, after the last closest app
 constexpr double kDeficitWeight_per_m = 1e4;
 constexpr double kDeficitPerToolWeight_m = 1000.0 / 6.0;  // less led to contacts in the campaign's real
 constexpr double kRounding_m = 1e-9;
+
+// The tool leaves its place for what comes within this time. Later than that the rollout may come nearer by so much per
+// second: until then the obstacle may have turned away, and the arm can still evade it.
+constexpr double kSoon_s = 0.3;
+constexpr double kLater_mps = 0.05;
 constexpr double kPreviousEvasionFactor = 0.8;
 constexpr double kNullSpaceDamping = 0.01;
 constexpr double kLeastDirection = 0.1;  // a shorter projection on the null space is mostly the damping's error
@@ -100,6 +105,7 @@ class RolloutCost {
         objective_(objective),
         wanted_radps_(wanted_radps),
         deficit_weight_per_m_(deficit_weight_per_m(objective)),
+        defers_(!input.is_stopping && !keeps_separation(input)),
         threats_(find_threats(settings, input.clearance, input.obstacles)),
         // A valid index: every rollout is kAfter_s longer than closest_s.
         worst_step_(static_cast<int>(threats_.closest_s / kStep_s)) {}
@@ -130,8 +136,8 @@ class RolloutCost {
     return clearance_deficit_m(velocity_radps, hard_m) >= hard_m;
   }
 
-  /// By how much the rollout comes closer than the hard clearance, m; exact up to most_m. Starts at the step that was
-  /// worst in the previous rollout, where the next one most likely fails as well.
+  /// By how much the rollout comes closer than the hard clearance, less deferred_m(), m; exact up to most_m. Starts at
+  /// the step that was worst in the previous rollout, where the next one most likely fails as well.
   double clearance_deficit_m(const JointVector& velocity_radps, double most_m) {
     const Rollout rollout = roll_out(input_, velocity_radps, threats_.last_s + kAfter_s);
     const double enough_m = settings_.hard_clearance_m - most_m;
@@ -140,9 +146,10 @@ class RolloutCost {
          ++i, step = (step + 1) % rollout.size()) {
       const double after_s = (step + 1) * kStep_s;
       const LinkPoses poses = forward_kinematics(input_.arm, rollout[step], *input_.poses.others);
+      const double later_m = deferred_m(after_s);
       const double clearance_m =
-          clearance_after(input_.arm, poses, threats_.obstacles.begin(), threats_.obstacles.size(), after_s, least_m,
-                          threats_.allowance_m.begin());
+          later_m + clearance_after(input_.arm, poses, threats_.obstacles.begin(), threats_.obstacles.size(), after_s,
+                                    least_m - later_m, threats_.allowance_m.begin());
       if (clearance_m < least_m) worst_step_ = step;
       least_m = clearance_m;
     }
@@ -150,11 +157,16 @@ class RolloutCost {
   }
 
  private:
+  double deferred_m(double after_s) const {
+    return defers_ ? std::clamp(kLater_mps * (after_s - kSoon_s), 0.0, settings_.hard_clearance_m) : 0.0;
+  }
+
   const ShieldSettings& settings_;
   const ShieldInput& input_;
   const QpObjective& objective_;
   const JointVector& wanted_radps_;
   const double deficit_weight_per_m_;
+  const bool defers_;
   const Threats threats_;
   int worst_step_;
   double largest_deficit_m_ = std::numeric_limits<double>::infinity();

@@ -14,7 +14,9 @@ namespace sidestep {
 /// examined.
 ///
 /// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance (for
-/// obstacles at rest: what they need, required_clearance.h).
+/// obstacles at rest: what they need, required_clearance.h). What is more than 0.3 s ahead may come nearer by 0.05 m
+/// for each further second, up to contact: it may turn away, and can still be evaded. That does not hold for an arm
+/// that stops or keeps separation from a person.
 ///
 /// Candidates:
 ///   - the plan, and the evasion of the previous cycle
