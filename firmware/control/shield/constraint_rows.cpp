@@ -336,6 +336,13 @@ class RowMaker {
 
 }  // namespace
 
+double largest_pass_mps(const ConstraintRows& rows) {
+  double largest_mps = 0.0;
+  for (const ConstraintRow& row : rows)
+    if (row.tier == Tier::kPass) largest_mps = std::max(largest_mps, row.bound);
+  return largest_mps;
+}
+
 RowSets make_rows(const ShieldSettings& settings, const ShieldInput& input, const VelocityRange& sustainable,
                   const VelocityRange& range, const JointVector& nominal_radps) {
   RowSets rows;

@@ -62,6 +62,9 @@ constexpr int kMaxRows = 56;
 /// pass row, a pass row before a comfort row, and within a tier those with the largest b - min (a q') over the range.
 using ConstraintRows = BoundedList<ConstraintRow, kMaxRows>;
 
+/// The largest bound of the pass rows, m/s; 0 if none is positive.
+double largest_pass_mps(const ConstraintRows& rows);
+
 /// The rows of the two programmes of a cycle, and what was found on the way.
 struct RowSets {
   ConstraintRows plan;  ///< all tiers, within the sustainable range

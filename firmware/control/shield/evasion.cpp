@@ -17,14 +17,14 @@ constexpr double kAfter_s = 0.2;     // of a rollout, after the last closest app
 constexpr double kDeficitWeight_per_m = 1e4;
 constexpr double kDeficitPerToolWeight_m = 1000.0 / 6.0;  // less led to contacts in the campaign's real
 constexpr double kRounding_m = 1e-9;
-
-// The tool leaves its place for what comes within this time. Later than that the rollout may come nearer by so much per
-// second: until then the obstacle may have turned away, and the arm can still evade it.
-constexpr double kSoon_s = 0.3;
-constexpr double kLater_mps = 0.05;
 constexpr double kPreviousEvasionFactor = 0.8;
 constexpr double kNullSpaceDamping = 0.01;
 constexpr double kLeastDirection = 0.1;  // a shorter projection on the null space is mostly the damping's error
+
+// Until kSoon_s ahead a rollout keeps the full clearance, after that less by kLater_mps: the obstacle may turn away
+// before, and later cycles can still evade it. Chosen by the success rate of the campaign family erratic.
+constexpr double kSoon_s = 0.3;
+constexpr double kLater_mps = 0.05;
 
 /// The obstacles of the near pairs at present, and the times of the closest approaches below pass_clearance: of the
 /// closest and of the last one, s.
@@ -99,13 +99,13 @@ double deficit_weight_per_m(const QpObjective& objective) {
 class RolloutCost {
  public:
   RolloutCost(const ShieldSettings& settings, const ShieldInput& input, const QpObjective& objective,
-              const JointVector& wanted_radps)
+              const JointVector& wanted_radps, bool defers)
       : settings_(settings),
         input_(input),
         objective_(objective),
         wanted_radps_(wanted_radps),
         deficit_weight_per_m_(deficit_weight_per_m(objective)),
-        defers_(!input.is_stopping && !keeps_separation(input)),
+        defers_(defers),
         threats_(find_threats(settings, input.clearance, input.obstacles)),
         // A valid index: every rollout is kAfter_s longer than closest_s.
         worst_step_(static_cast<int>(threats_.closest_s / kStep_s)) {}
@@ -136,7 +136,7 @@ class RolloutCost {
     return clearance_deficit_m(velocity_radps, hard_m) >= hard_m;
   }
 
-  /// By how much the rollout comes closer than the hard clearance, less deferred_m(), m; exact up to most_m. Starts at
+  /// By how much the rollout comes closer than the hard clearance less deferred_m(), m; exact up to most_m. Starts at
   /// the step that was worst in the previous rollout, where the next one most likely fails as well.
   double clearance_deficit_m(const JointVector& velocity_radps, double most_m) {
     const Rollout rollout = roll_out(input_, velocity_radps, threats_.last_s + kAfter_s);
@@ -157,6 +157,7 @@ class RolloutCost {
   }
 
  private:
+  /// By how much less than the hard clearance the rollout has to keep after_s ahead, m.
   double deferred_m(double after_s) const {
     return defers_ ? std::clamp(kLater_mps * (after_s - kSoon_s), 0.0, settings_.hard_clearance_m) : 0.0;
   }
@@ -166,7 +167,7 @@ class RolloutCost {
   const QpObjective& objective_;
   const JointVector& wanted_radps_;
   const double deficit_weight_per_m_;
-  const bool defers_;
+  const bool defers_;  ///< leaves to later cycles what is more than kSoon_s ahead
   const Threats threats_;
   int worst_step_;
   double largest_deficit_m_ = std::numeric_limits<double>::infinity();
@@ -228,19 +229,15 @@ double largest_factor(const VelocityRange& range, const JointVector& from, const
   return least;
 }
 
-bool is_threatened(const ConstraintRows& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const ConstraintRow& row) { return row.tier == Tier::kPass && row.bound > 0.0; });
-}
-
 }  // namespace
 
 Plan evade(const ShieldSettings& settings, const ShieldInput& input, const ConstraintRows& rows,
            const VelocityRange& range, const QpObjective& objective, const JointVector& planned_radps) {
-  if (!is_threatened(rows)) return {planned_radps, false};
+  if (largest_pass_mps(rows) <= 0.0) return {planned_radps, false};
   // Else the target, from which the separation keeps the arm away, would draw it back.
-  const JointVector& wanted_radps = keeps_separation(input) ? planned_radps : objective.nominal_radps;
-  RolloutCost rollout_cost(settings, input, objective, wanted_radps);
+  const bool separates = keeps_separation(input);
+  const JointVector& wanted_radps = separates ? planned_radps : objective.nominal_radps;
+  RolloutCost rollout_cost(settings, input, objective, wanted_radps, !input.is_stopping && !separates);
   if (rollout_cost.limit_deficit(planned_radps) <= 0.0) return {planned_radps, false};
   JointVector best = planned_radps;
   double best_cost = std::numeric_limits<double>::infinity();

@@ -14,9 +14,9 @@ namespace sidestep {
 /// examined.
 ///
 /// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance (for
-/// obstacles at rest: what they need, required_clearance.h). What is more than 0.3 s ahead may come nearer by 0.05 m
-/// for each further second, up to contact: it may turn away, and can still be evaded. That does not hold for an arm
-/// that stops or keeps separation from a person.
+/// obstacles at rest: what they need, required_clearance.h). More than 0.3 s ahead the clearance may be less by 0.05 m
+/// for each further second, down to contact: the obstacle may turn away, and later cycles can still evade it. An arm
+/// that stops or keeps separation from a person keeps the full clearance.
 ///
 /// Candidates:
 ///   - the plan, and the evasion of the previous cycle

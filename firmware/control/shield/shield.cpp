@@ -1,7 +1,5 @@
 #include "firmware/control/shield/shield.h"
 
-#include <algorithm>
-
 #include "firmware/control/shield/evasion.h"
 
 namespace sidestep {
@@ -11,11 +9,6 @@ namespace {
 /// A pass row that demands more is urgent: what it keeps away comes fast, or is near. Joints that made up for others
 /// would evade it later: spheres at 2 m/s were passed 4 mm nearer in the mean.
 constexpr double kUrgent_mps = 0.5;
-
-bool is_urgent(const ConstraintRows& plan) {
-  return std::any_of(plan.begin(), plan.end(),
-                     [](const ConstraintRow& row) { return row.tier == Tier::kPass && row.bound > kUrgent_mps; });
-}
 
 }  // namespace
 
@@ -27,7 +20,7 @@ ShieldResult shield(const ShieldSettings& settings, const ShieldInput& input, co
   const QpSolution nearest = solve(rows.plan, sustainable, to_nominal);
   const Plan plan = evade(settings, input, rows.plan, sustainable, to_nominal, nearest.velocity_radps);
 
-  const bool clearance_first = plan.evading || rows.step.size() > 0 || is_urgent(rows.plan);
+  const bool clearance_first = plan.evading || rows.step.size() > 0 || largest_pass_mps(rows.plan) > kUrgent_mps;
   const double step_tool_weight = clearance_first ? 0.0 : input.step_tool_weight;
   const QpObjective to_plan{plan.velocity_radps, tool_jacobian, step_tool_weight, input.comfort_weight, scale};
   const QpSolution safe = solve(rows.step, range, to_plan);

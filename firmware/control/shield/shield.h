@@ -25,7 +25,7 @@ struct ShieldInput {
   double comfort_weight;          ///< weight of the comfort tier in this cycle, s2/m2
   double tool_weight;             ///< w in this cycle, 1/m2
   double person_weight = 0.0;     ///< of the separation from persons in this cycle; 0: comfort as from anything else
-  bool is_stopping = false;       ///< the arm follows no guide, so that evasion tries more candidates (evasion.h)
+  bool is_stopping = false;       ///< the arm follows no guide: evasion tries more, defers nothing (evasion.h)
   double step_tool_weight = 0.0;  ///< w of the second programme, 1/m2; 0: the joints follow the plan one by one
 };
 

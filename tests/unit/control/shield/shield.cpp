@@ -61,13 +61,6 @@ struct Scene {
   }
   RowSets rows() const { return make_rows(model().settings.shield, input(), sustainable, range, JointVector::Zero(7)); }
   ConstraintRows hard_rows() const { return rows().step; }
-  /// Largest demand of an obstacle that shall be passed, m/s.
-  double largest_pass_mps() const {
-    double largest_mps = 0.0;
-    for (const ConstraintRow& row : rows().plan)
-      if (row.tier == Tier::kPass) largest_mps = std::max(largest_mps, row.bound);
-    return largest_mps;
-  }
 
   void add(const Capsule& capsule, const Vector3& velocity_mps = Vector3::Zero()) {
     set.obstacles[static_cast<size_t>(set.count)] = {set.count, Shape::kCapsule, capsule, velocity_mps,
@@ -337,7 +330,8 @@ void the_tool_of_the_coming_period_counts_less_than_clearance(void**) {
     const ShieldResult without = scene.shielded();
     scene.step_tool_weight = model().settings.shield.tool_weight;
     const ShieldResult with = scene.shielded();
-    const bool has_rows = scene.hard_rows().size() > 0, is_urgent = scene.largest_pass_mps() > 0.5;
+    const RowSets rows = scene.rows();
+    const bool has_rows = rows.step.size() > 0, is_urgent = largest_pass_mps(rows.plan) > 0.5;
     if (has_rows || without.plan.evading || is_urgent)
       check_near_because(with.velocity_radps, without.velocity_radps, 0.0, "state %d", trial);
     else
