@@ -39,7 +39,6 @@ constexpr double kDetour_rad = 1.5;
 // The range of a retreat around the present configuration per joint; every other one may lead farther.
 constexpr double kRetreat_rad = 1.0;
 constexpr double kFarRetreat_rad = 2.0;
-constexpr int kPointsFromPersons = 8;   // on the way, at which the nearness is measured
 constexpr int kTriesFromPersons = 200;  // most are not nearly as far away as the best one so far
 
 // The dampings of self-motions, in turns: the first, the first three or all, by Excursion. So many seconds longer may
@@ -53,6 +52,46 @@ constexpr double kStayAtGoal_s = 1.0;
 // So much below the clearance at the start, and for so long, a guide may lead on the arm's path out.
 constexpr double kStartAllowance_m = 0.005;
 constexpr double kStartPhase_s = 0.5;
+
+/// The Forecast::proximity_s of guides from a snapshot, computed at few instants. Large.
+class ProximityOfGuides {
+ public:
+  ProximityOfGuides(const Model& model, const Snapshot& from)
+      : arm_(model.arm), now_s_(from.now_s), others_(place_others(model.arm, from.others, from.attachments)) {
+    add_persons(from, model.settings.foresight.horizon_s, in_the_end_);
+    for (size_t k = 0; k < kInstants; ++k) add_persons(from, after_s(k), at_instants_[k]);
+  }
+
+  /// At least least_s where it is no less than that.
+  double cost_s(const Guide& guide, double least_s) const {
+    double sum_s = kProximityCost_s * proximity(guide.position_rad[guide.knots - 1], in_the_end_);
+    for (size_t k = 0; k < kInstants && sum_s < least_s; ++k)
+      sum_s += kExposureCost * kEvery_s * proximity(point_of(guide, now_s_ + after_s(k)).position_rad, at_instants_[k]);
+    return sum_s;
+  }
+
+ private:
+  static constexpr size_t kInstants = 8;
+  static constexpr double kEvery_s = kExposure_s / kInstants;
+  using Persons = BoundedList<Obstacle, kMaxNearbyObstacles>;
+
+  static double after_s(size_t instant) { return (instant + 1) * kEvery_s; }
+  static void add_persons(const Snapshot& from, double after_s, Persons& persons) {
+    for (int i = 0; i < from.nearby.count; ++i) {
+      const Obstacle& obstacle = from.nearby.obstacles[i];
+      if (obstacle.kind == Kind::kPerson) persons.add(predicted_obstacle(obstacle, after_s));
+    }
+  }
+  double proximity(const JointVector& q_rad, const Persons& persons) const {
+    return person_proximity(forward_kinematics(arm_, q_rad, others_), persons.begin(), persons.size());
+  }
+
+  const Arm& arm_;
+  const double now_s_;
+  const OtherFrames others_;
+  Persons in_the_end_;
+  std::array<Persons, kInstants> at_instants_;
+};
 
 /// A position limit; half a turn where a joint has none. (A prismatic joint has one.)
 double bounded(double limit_rad, double otherwise_rad) {
@@ -199,33 +238,16 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
-  const OtherFrames others = place_others(model_.arm, from.others, from.attachments);
-  BoundedList<Obstacle, kMaxNearbyObstacles> predicted;
-  for (int i = 0; i < from.nearby.count; ++i)
-    predicted.add(predicted_obstacle(from.nearby.obstacles[i], model_.settings.foresight.horizon_s));
-  const auto proximity = [&](const JointVector& q_rad) {
-    const LinkPoses poses = forward_kinematics(model_.arm, q_rad, others);
-    return person_proximity(poses, predicted.begin(), predicted.size());
-  };
-  const auto mean_proximity = [&](const Guide& guide) {
-    const double start_s = guide.time_s[0], step_s = (guide.end_s() - start_s) / kPointsFromPersons;
-    double sum = 0.0;
-    for (int i = 1; i <= kPointsFromPersons; ++i) sum += proximity(point_of(guide, start_s + i * step_s).position_rad);
-    return sum / kPointsFromPersons;
-  };
-  const double present = proximity(from.arm.position_rad);
-  double least = 2.0 * present;
+  const ProximityOfGuides proximity(model_, from);
+  const Guide stay = start_of(from, ForesightStatus::kWaiting);
+  double least_s = proximity.cost_s(stay, std::numeric_limits<double>::infinity());
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
-    const JointVector q_rad = random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]);
-    const double in_the_end = proximity(q_rad);
-    if (in_the_end >= std::min(present, least)) continue;
-    Guide guide = start_of(from, ForesightStatus::kWaiting);
-    append(guide, q_rad);
-    const double found = in_the_end + mean_proximity(guide);
-    if (found >= least) continue;
-    if (!ends_in_time(from, guide) || !is_clear(from, guide)) continue;
-    least = found;
+    Guide guide = stay;
+    append(guide, random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]));
+    const double cost_s = proximity.cost_s(guide, least_s);
+    if (cost_s >= least_s || !ends_in_time(from, guide) || !is_clear(from, guide)) continue;
+    least_s = cost_s;
     best = guide;
   }
   return best;

@@ -45,9 +45,9 @@ class Planner {
   Guide plan_retreat(const Snapshot& from);
 
   /// 200 tries. The goal configuration is random, each joint within 1 rad, within 2 rad, or anywhere, in turns. Returns
-  /// the guide with the least sum of person_proximity() at its end and of its mean on the way, among those that are
-  /// clear and end with less than the present one, persons where predicted_obstacle() has them in the end; with
-  /// ForesightStatus::kWaiting, without knots if no try succeeds. It ends at least 1 s before the horizon.
+  /// the guide with the least Forecast::proximity_s, computed at 8 instants of the first 3 s and in the end, among
+  /// those that are clear and have less than the arm that stays; with ForesightStatus::kWaiting, without knots if no
+  /// try succeeds. It ends at least 1 s before the horizon.
   Guide plan_retreat_from_persons(const Snapshot& from);
 
  private:

@@ -37,6 +37,17 @@ constexpr double kViolated_mps = 1e-4;
 /// power of two: nothing is rounded.
 constexpr double kLinksWeight = 512.0;
 
+/// The same for the rows that keep the arm from approaching a near person by itself. Nearer than this above the
+/// required clearance a person has such a row.
+constexpr double kPersonsWeight = 64.0;
+constexpr double kNearPerson_m = 0.05;
+
+/// So many rows of each tier give no place to the other tiers: beside persons, so that separation from them remains
+/// where hard and pass rows would fill the list, and otherwise.
+using Shares = std::array<int, kTiers>;
+constexpr Shares kSharesBesidePersons{24, 16, 16}, kShares{kMaxRows, 0, 0};
+static_assert(kSharesBesidePersons[0] + kSharesBesidePersons[1] + kSharesBesidePersons[2] == kMaxRows);
+
 /// The least value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {
   double sum_mps = 0.0;
@@ -51,38 +62,54 @@ bool is_within(const VelocityRange& inner, const VelocityRange& outer) {
          (inner.upper_radps.array() <= outer.upper_radps.array()).all();
 }
 
-/// Fills a list of rows. Into a full list a row goes in place of the least urgent one, if it is more urgent. Urgency:
-/// the tier, then the violation by the worst velocity of the range that the list is for.
+/// Fills a list of rows, and chooses among more than it can hold (ConstraintRows). Within a tier the rows with the
+/// largest violation by the worst velocity of the range are kept.
 class RowFiller {
  public:
-  explicit RowFiller(ConstraintRows& rows) : rows_(rows) {}
+  RowFiller(ConstraintRows& rows, const Shares& shares) : rows_(rows), shares_(shares) {}
 
   void add(const JointVector& row, double bound, Tier tier, double violation_mps, double other_bound = 0.0) {
     if (!rows_.is_full()) {
       rows_.emplace(row, bound, tier, other_bound);
       violations_mps_.add(violation_mps);
+      ++count_[index(tier)];
       return;
     }
-    if (least_urgent_ < 0) find_least_urgent();
-    if (!is_less_urgent(least_urgent_, tier, violation_mps)) return;
-    rows_[least_urgent_] = {row, bound, tier, other_bound};
-    violations_mps_[least_urgent_] = violation_mps;
-    least_urgent_ = -1;
+    const Tier yielding = yielding_tier(tier);
+    const int place = least_violated(yielding);
+    if (place < 0 || (yielding == tier && !(violations_mps_[place] < violation_mps))) return;
+    rows_[place] = {row, bound, tier, other_bound};
+    violations_mps_[place] = violation_mps;
+    --count_[index(yielding)];
+    ++count_[index(tier)];
+    least_violated_[index(tier)] = least_violated_[index(yielding)] = -1;
   }
 
  private:
-  bool is_less_urgent(int i, Tier tier, double violation_mps) const {
-    return rows_[i].tier != tier ? rows_[i].tier > tier : violations_mps_[i] < violation_mps;
+  static size_t index(Tier tier) { return static_cast<size_t>(tier); }
+
+  /// The tier that gives a place in the full list to a row of `tier`: the last one with more than its share. A tier
+  /// that has its own share gets none from the tiers before it.
+  Tier yielding_tier(Tier tier) const {
+    const bool within_share = count_[index(tier)] < shares_[index(tier)];
+    for (const Tier other : {Tier::kComfort, Tier::kPass, Tier::kHard})
+      if ((within_share || other > tier) && count_[index(other)] > shares_[index(other)]) return other;
+    return tier;
   }
-  void find_least_urgent() {
-    least_urgent_ = 0;
-    for (int i = 1; i < rows_.size(); ++i)
-      if (is_less_urgent(i, rows_[least_urgent_].tier, violations_mps_[least_urgent_])) least_urgent_ = i;
+  /// Index of the tier's row with the least violation.
+  int least_violated(Tier tier) {
+    int& least = least_violated_[index(tier)];
+    if (least >= 0) return least;
+    for (int i = 0; i < rows_.size(); ++i)
+      if (rows_[i].tier == tier && (least < 0 || violations_mps_[i] < violations_mps_[least])) least = i;
+    return least;
   }
 
   ConstraintRows& rows_;
+  const Shares& shares_;
   BoundedList<double, kMaxRows> violations_mps_;
-  int least_urgent_ = -1;  ///< index into rows_; -1: not known
+  std::array<int, kTiers> count_{};                     ///< of each tier
+  std::array<int, kTiers> least_violated_{-1, -1, -1};  ///< least_violated(); -1: not known
 };
 
 /// Distance barrier of one tier: d' >= -gain (d - clearance).
@@ -130,8 +157,8 @@ class RowMaker {
         range_(range),
         within_(is_within(range, sustainable)),
         rows_(rows),
-        plan_(rows.plan),
-        step_(rows.step) {}
+        plan_(rows.plan, keeps_separation(input) ? kSharesBesidePersons : kShares),
+        step_(rows.step, kShares) {}
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
     const BodyShape &a = shape(self.first), &b = shape(self.second);
@@ -164,7 +191,10 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
-    add_hard(row, least, room_m(row, distance_m, pair), threat_mps);
+    const double room = room_m(row, distance_m, pair);
+    add_hard(row, least, room, threat_mps);
+    if (is_person(pair) && room < kNearPerson_m)
+      add_hard(row, least, room, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -205,6 +235,8 @@ class RowMaker {
   }
 
  private:
+  bool is_person(const NearPair& pair) const { return input_.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; }
+
   /// In place of comfort for a person (constraint_rows.h). least: the least value of the row, m/s.
   void add_separation(const JointVector& row, double least, double approaching_mps, double distance_m) {
     const double most_mps = -least_mps(-row, sustainable_);
@@ -289,9 +321,10 @@ class RowMaker {
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
   /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
-  /// weight: of the row among those that share the slack. Returns the bound.
-  double add_hard(const JointVector& row, double least, double room_m, double closing_mps, double weight = 1.0) {
-    const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
+  /// weight: of the row among those that share the slack; largest_mps: of the bound. Returns the bound.
+  double add_hard(const JointVector& row, double least, double room_m, double closing_mps, double weight = 1.0,
+                  double largest_mps = kLargestDemand_mps) {
+    const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), largest_mps);
     const bool counts = bound_mps > least;
     if (counts) plan_.add(weight * row, weight * bound_mps, Tier::kHard, bound_mps - least);
     if (within_ && !counts) return bound_mps;

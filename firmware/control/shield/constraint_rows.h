@@ -27,6 +27,8 @@ namespace sidestep {
 ///   b are multiplied by 512: where an obstacle's approach cannot be met and the slack is shared, links yield by 1/512
 ///   of the speed by which obstacles do. A pair of links has about 1 mm of clearance, an obstacle 20 mm. Of the 3 m/s
 ///   that an obstacle may demand links then yield 6 mm/s, which hard_gain stops 0.4 mm below c / 2.
+///   A person with r < 0.05 m has a second hard row, b = min(b1, b2, 0) with k v = min(v, 0), and row and b are
+///   multiplied by 64: where another limb cannot be met, the arm does not evade it into this one.
 ///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
 ///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
 ///   obstacle's speed does not count in these. So have two links whose distance is less than 30 mm above c.
@@ -60,6 +62,8 @@ constexpr int kMaxRows = 56;
 
 /// The rows that some velocity within the range violates. If there are more than kMaxRows, a hard row is kept before a
 /// pass row, a pass row before a comfort row, and within a tier those with the largest b - min (a q') over the range.
+/// While the arm keeps separation from a person near it, the plan has room for 24 hard, 16 pass and 16 comfort rows
+/// before that order applies.
 using ConstraintRows = BoundedList<ConstraintRow, kMaxRows>;
 
 /// The largest bound of the pass rows, m/s; 0 if none is positive.

@@ -56,7 +56,7 @@ void add(Snapshot& snapshot, const Obstacle& obstacle) {
 }
 
 /// A random configuration and target among three spheres and three boxes that move and turn, clear of the arm at first.
-/// A box and a sphere of them are persons.
+/// A box and a sphere of them are persons, who walk on.
 std::unique_ptr<Snapshot> random_world(Random& random) {
   auto snapshot = empty_world();
   snapshot->arm.position_rad = random.configuration(lwa3(), 0.8);
@@ -69,7 +69,10 @@ std::unique_ptr<Snapshot> random_world(Random& random) {
                             : sphere_obstacle(centre, random.uniform(0.03, 0.15));
     obstacle.velocity_mps = random.inside(-0.15, 0.15);
     obstacle.angular_velocity_radps = random.inside(-0.3, 0.3);
-    if (snapshot->nearby.count % 3 == 0) obstacle.kind = Kind::kPerson;
+    if (snapshot->nearby.count % 3 == 0) {
+      obstacle.kind = Kind::kPerson;
+      obstacle.mean_velocity_mps = obstacle.velocity_mps;
+    }
     add(*snapshot, obstacle);
     if (clearance_m(snapshot->arm.position_rad, snapshot->nearby, 0.0) < 0.02) --snapshot->nearby.count;
   }
@@ -125,25 +128,68 @@ void a_retreat_from_persons_is_clear_of_the_obstacles_as_they_move(void**) {
   for_random_plans(&Planner::plan_retreat_from_persons, 100, check_clear);
 }
 
-void a_retreat_from_persons_ends_farther_away_from_them(void**) {
-  double start = 0.0, end = 0.0;
-  const auto compare = [&](const Snapshot& snapshot, const Guide& guide) {
-    assert_int_equal(static_cast<int>(guide.foresight_status), static_cast<int>(ForesightStatus::kWaiting));
-    check(guide.end_s() <= snapshot.now_s + settings().horizon_s - 1.0, "ends at %g s", guide.end_s());
+/// The proximity_s of a forecast that follows the guide (rollout.h), integrated in steps of 10 ms.
+double proximity_s(const Snapshot& snapshot, const Guide& guide) {
+  const auto proximity = [&](double after_s) {
     NearbyObstacles then;
     then.count = snapshot.nearby.count;
     for (size_t i = 0; i < static_cast<size_t>(then.count); ++i)
-      then.obstacles[i] = predicted_obstacle(snapshot.nearby.obstacles[i], settings().horizon_s);
-    const auto proximity = [&](const JointVector& q_rad) {
-      return person_proximity(forward_kinematics(lwa3(), q_rad), then.obstacles.data(), then.count);
-    };
-    const double from = proximity(snapshot.arm.position_rad), to = proximity(guide.position_rad[1]);
-    check(to < from, "%g at the end, %g at the start", to, from);
-    start += from;
-    end += to;
+      then.obstacles[i] = predicted_obstacle(snapshot.nearby.obstacles[i], after_s);
+    const JointVector q_rad = point_of(guide, snapshot.now_s + after_s).position_rad;
+    return person_proximity(forward_kinematics(lwa3(), q_rad), then.obstacles.data(), then.count);
+  };
+  const double dt_s = 0.01;
+  double sum_s = kProximityCost_s * proximity(settings().horizon_s);
+  for (int i = 0; i < 300; ++i) sum_s += kExposureCost * dt_s * proximity((i + 0.5) * dt_s);
+  return sum_s;
+}
+
+Guide stay(const Snapshot& snapshot) {
+  Guide guide;
+  guide.add(snapshot.now_s, snapshot.arm.position_rad);
+  return guide;
+}
+
+void a_retreat_from_persons_keeps_farther_away_from_them_than_the_arm_that_stays(void**) {
+  double staying_s = 0.0, retreating_s = 0.0;
+  const auto compare = [&](const Snapshot& snapshot, const Guide& guide) {
+    assert_int_equal(static_cast<int>(guide.foresight_status), static_cast<int>(ForesightStatus::kWaiting));
+    check(guide.end_s() <= snapshot.now_s + settings().horizon_s - 1.0, "ends at %g s", guide.end_s());
+    const double from_s = proximity_s(snapshot, stay(snapshot)), to_s = proximity_s(snapshot, guide);
+    check(to_s < from_s, "%g s, %g s at rest", to_s, from_s);
+    staying_s += from_s;
+    retreating_s += to_s;
   };
   for_random_plans(&Planner::plan_retreat_from_persons, 100, compare);
-  check(end < 0.5 * start, "%g of %g remain", end, start);
+  check(retreating_s < 0.7 * staying_s, "%g of %g s remain", retreating_s, staying_s);
+}
+
+/// Searched with the persons in their final positions alone, 36 instead of 26 % remain of what an arm at rest has.
+void a_retreat_from_persons_counts_where_they_walk(void**) {
+  Random random(3);
+  Planner planner(model());
+  double staying_s = 0.0, retreating_s = 0.0;
+  int found = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const auto snapshot = empty_world();
+    snapshot->arm.position_rad = random.configuration(lwa3(), 0.8);
+    const Vector3 tool_m = forward_kinematics(lwa3(), snapshot->arm.position_rad).tool_position;
+    const Vector3 way = Vector3(random.uniform(-1, 1), random.uniform(-1, 1), 0.0).normalized();
+    Obstacle person =
+        capsule_obstacle(tool_m - 1.0 * way + 0.35 * Vector3(-way.y(), way.x(), 0.0), Matrix3::Identity(), 0.15, 1.0);
+    person.kind = Kind::kPerson;
+    person.velocity_mps = person.mean_velocity_mps = 1.0 * way;
+    add(*snapshot, person);
+    for (int call = 0; call < 3; ++call) {
+      const Guide guide = planner.plan_retreat_from_persons(*snapshot);
+      if (guide.knots == 0) continue;
+      staying_s += proximity_s(*snapshot, stay(*snapshot));
+      retreating_s += proximity_s(*snapshot, guide);
+      ++found;
+    }
+  }
+  check(found > 90, "only %d plans were found", found);
+  check(retreating_s < 0.3 * staying_s, "%g of %g s remain", retreating_s, staying_s);
 }
 
 void a_plan_starts_at_rest_in_the_present_configuration(void**) {
@@ -275,7 +321,8 @@ int main() {
       cmocka_unit_test(a_plan_to_the_target_is_clear_of_the_obstacles_as_they_move),
       cmocka_unit_test(a_retreat_is_clear_of_the_obstacles_as_they_move),
       cmocka_unit_test(a_retreat_from_persons_is_clear_of_the_obstacles_as_they_move),
-      cmocka_unit_test(a_retreat_from_persons_ends_farther_away_from_them),
+      cmocka_unit_test(a_retreat_from_persons_keeps_farther_away_from_them_than_the_arm_that_stays),
+      cmocka_unit_test(a_retreat_from_persons_counts_where_they_walk),
       cmocka_unit_test(a_plan_starts_at_rest_in_the_present_configuration),
       cmocka_unit_test(a_plan_keeps_the_limits_of_the_joints),
       cmocka_unit_test(a_plan_to_the_target_ends_there_a_second_before_the_horizon),

@@ -3,6 +3,7 @@
 #include "firmware/control/shield/required_clearance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -247,6 +248,42 @@ void a_person_has_a_row_of_separation(void**) {
   check(capped > 20, "%d capped, %d met", capped, met);
 }
 
+/// Beside that, a person who is near has a row of 64 times the weight, which only keeps the arm from approaching.
+void a_near_person_has_a_row_against_the_approach_of_the_arm_itself(void**) {
+  Random random(12);
+  int seen = 0, far = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    if (obstacle.shape == Shape::kBox) continue;
+    obstacle.kind = Kind::kPerson;
+    scene.add(obstacle);
+    const NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
+    const JointVector row = jacobian.transpose() * pair.now.normal;
+    const ConstraintRows rows = scene.rows_of(pair, true);
+    const double room_m = pair.now.distance_m - kSettings.hard_clearance_m;
+    const double away_mps = std::min(0.0, pair.now.normal.dot(pair.velocity_mps));
+    const double by_gain_mps = away_mps - kSettings.hard_gain_per_s * room_m;
+    const double bound_mps =
+        std::min(0.0, room_m > 0.0 ? std::max(by_gain_mps, away_mps + hard_bound(row, room_m)) : by_gain_mps);
+    const auto is_it = [&](const ConstraintRow& one) {
+      return (one.row - 64.0 * row).norm() < 1e-5 && std::abs(one.bound - 64.0 * bound_mps) < 1e-5;
+    };
+    const bool found = std::any_of(rows.begin(), rows.end(), is_it);
+    if (!joints_matter(row)) continue;
+    if (room_m > 0.05) {
+      assert_false(found);
+      ++far;
+    } else {
+      check(found, "trial %d: %g m", trial, room_m);
+      ++seen;
+    }
+  }
+  check(seen > 100 && far > 100, "%d near, %d far", seen, far);
+}
+
 /// The bound grows with the velocity of the obstacle toward the link.
 void an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it(void**) {
   Random random(3);
@@ -443,37 +480,67 @@ bool same(const ConstraintRow& a, const ConstraintRow& b) {
   return a.row == b.row && a.bound == b.bound && a.tier == b.tier && a.other_bound == b.other_bound;
 }
 
-/// All rows of all pairs, without the limit on their number.
-std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& near) {
+/// All rows of all pairs, without the limit on their number. Rows of separation depend on the range: of these, those
+/// that some velocity in it does not meet.
+std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& near, const VelocityRange& range) {
   std::vector<ConstraintRow> all;
-  for (const NearPair& pair : near)
-    for (const ConstraintRow& row : scene.rows_of(pair)) all.push_back(row);
+  for (const NearPair& pair : near) {
+    const Obstacle& obstacle = scene.set->obstacles[static_cast<size_t>(pair.now.obstacle)];
+    const bool separates = obstacle.kind == Kind::kPerson && scene.person_weight > 0.0;
+    for (const ConstraintRow& row : scene.rows_of(pair))
+      if (!separates || row.tier != Tier::kComfort) all.push_back(row);
+    if (!separates) continue;
+    for (const ConstraintRow& row : scene.rows(range))
+      if (row.tier == Tier::kComfort) all.push_back(row);
+  }
   return all;
 }
 
-/// Checks that the rows kept are those that some velocity in the range does not meet; of too many, the most urgent.
-/// Returns whether they are too many.
+/// So many rows of each tier have a place before the order of the tiers applies.
+using Shares = std::array<size_t, kTiers>;
+constexpr Shares kBesidePersons{24, 16, 16}, kOtherwise{0, 0, 0};
+
+/// Checks that the rows kept are those that some velocity in the range does not meet; of too many, of each tier the
+/// most urgent. Returns whether they are too many.
 bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kept, const VelocityRange& range,
-                int trial) {
-  std::vector<ConstraintRow> relevant;
-  for (const ConstraintRow& row : all)
-    if (worst_shortfall(row, range) > 0.0) relevant.push_back(row);
-  assert_int_equal(kept.size(), std::min(kMaxRows, static_cast<int>(relevant.size())));
-  const auto less_urgent = [&](const ConstraintRow& a, const ConstraintRow& b) {
-    return a.tier != b.tier ? a.tier > b.tier : worst_shortfall(a, range) < worst_shortfall(b, range) - 1e-12;
+                const Shares& shares, int trial) {
+  const auto violation = [&](const ConstraintRow& row) {
+    const bool is_weighed = std::any_of(all.begin(), all.end(), [&](const ConstraintRow& one) {
+      return one.tier == Tier::kHard && row.tier == Tier::kHard && row.row == 64.0 * one.row;
+    });
+    return worst_shortfall(row, range) / (is_weighed ? 64.0 : 1.0);
   };
-  const ConstraintRow *least_kept = nullptr, *most_skipped = nullptr;
-  for (const ConstraintRow& row : relevant) {
-    const bool is_kept =
-        std::any_of(kept.begin(), kept.end(), [&](const ConstraintRow& one) { return same(one, row); });
-    if (is_kept && (!least_kept || less_urgent(row, *least_kept))) least_kept = &row;
-    if (!is_kept && (!most_skipped || less_urgent(*most_skipped, row))) most_skipped = &row;
+  std::array<std::vector<ConstraintRow>, kTiers> relevant;
+  for (const ConstraintRow& row : all)
+    if (worst_shortfall(row, range) > 0.0) relevant[static_cast<size_t>(row.tier)].push_back(row);
+  size_t count = 0, room = kMaxRows;
+  for (size_t tier = 0; tier < kTiers; ++tier) {
+    count += relevant[tier].size();
+    room -= std::min(shares[tier], relevant[tier].size());
   }
-  if (most_skipped)
-    check(!less_urgent(*least_kept, *most_skipped), "trial %d: skipped %g of tier %d, kept %g of tier %d", trial,
-          worst_shortfall(*most_skipped, range), static_cast<int>(most_skipped->tier),
-          worst_shortfall(*least_kept, range), static_cast<int>(least_kept->tier));
-  return relevant.size() > kMaxRows;
+  assert_int_equal(kept.size(), std::min<size_t>(kMaxRows, count));
+  for (size_t tier = 0; tier < kTiers; ++tier) {
+    std::vector<ConstraintRow>& rows = relevant[tier];
+    const size_t more = rows.size() - std::min(shares[tier], rows.size()), granted = std::min(more, room);
+    room -= granted;
+    const size_t keeps = rows.size() - more + granted;
+    std::sort(rows.begin(), rows.end(),
+              [&](const ConstraintRow& a, const ConstraintRow& b) { return violation(a) > violation(b); });
+    const auto is_of_tier = [&](const ConstraintRow& row) { return static_cast<size_t>(row.tier) == tier; };
+    check(std::count_if(kept.begin(), kept.end(), is_of_tier) == static_cast<long>(keeps),
+          "trial %d, tier %zu: not %zu", trial, tier, keeps);
+    for (const ConstraintRow& row : kept)
+      if (is_of_tier(row))
+        check(violation(row) > violation(rows[keeps - 1]) - 1e-12, "trial %d, tier %zu: kept %g, the last of %zu is %g",
+              trial, tier, violation(row), keeps, violation(rows[keeps - 1]));
+    const auto is_kept = [&](const ConstraintRow& one) {
+      return std::any_of(kept.begin(), kept.end(), [&](const ConstraintRow& row) { return same(one, row); });
+    };
+    for (size_t i = 0; i < keeps; ++i)
+      check(is_kept(rows[i]) || violation(rows[i]) < violation(rows[keeps - 1]) + 1e-12,
+            "trial %d, tier %zu: skipped %g", trial, tier, violation(rows[i]));
+  }
+  return count > kMaxRows;
 }
 
 VelocityRange random_range(Random& random, double largest_radps) {
@@ -483,32 +550,37 @@ VelocityRange random_range(Random& random, double largest_radps) {
 
 void only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped(void**) {
   Random random(6);
-  int crowded = 0;
+  int crowded[2] = {};
   for (int trial = 0; trial < 300; ++trial) {
     Scene scene(random.configuration(lwa3()));
     scene.last_radps = random.joints(7, -2, 2);
+    const bool persons = random.chance(0.5);
+    scene.person_weight = persons ? 100.0 : 0.0;
     std::vector<NearPair> near;
+    bool has_person = false;
     for (int i = random.index(kMaxNear + 1); i > 0; --i) {
       const int shape = moving_shape(random);
-      const Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+      Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+      if (persons && random.chance(0.8)) obstacle.kind = Kind::kPerson;
+      has_person |= obstacle.kind == Kind::kPerson;
       scene.add(obstacle);
       near.push_back(pair_of(scene.poses, shape, scene.set->count - 1, obstacle));
     }
-    const std::vector<ConstraintRow> all = all_rows(scene, near);
+    // The range of the step may lie partly outside the sustainable range: a joint may be too fast for its limit.
+    const VelocityRange sustainable = random_range(random, 2.0),
+                        within{0.5 * sustainable.lower_radps + 0.5 * sustainable.upper_radps, sustainable.upper_radps};
+    const VelocityRange range = random.chance(0.5) ? within : random_range(random, 2.0);
+    const std::vector<ConstraintRow> all = all_rows(scene, near, sustainable);
     std::vector<ConstraintRow> hard;
     std::copy_if(all.begin(), all.end(), std::back_inserter(hard),
                  [](const ConstraintRow& row) { return row.tier == Tier::kHard; });
     scene.clearance.near.clear();
     for (const NearPair& pair : near) scene.clearance.near.add(pair);
-    // The range of the step may lie partly outside the sustainable range: a joint may be too fast for its limit.
-    const VelocityRange sustainable = random_range(random, 2.0),
-                        within{0.5 * sustainable.lower_radps + 0.5 * sustainable.upper_radps, sustainable.upper_radps};
-    const VelocityRange range = random.chance(0.5) ? within : random_range(random, 2.0);
     const RowSets rows = scene.row_sets(sustainable, range);
-    crowded += check_kept(all, rows.plan, sustainable, trial);
-    check_kept(hard, rows.step, range, trial);
+    crowded[has_person] += check_kept(all, rows.plan, sustainable, has_person ? kBesidePersons : kOtherwise, trial);
+    check_kept(hard, rows.step, range, kOtherwise, trial);
   }
-  check(crowded > 20, "only %d", crowded);
+  check(crowded[0] > 20 && crowded[1] > 20, "only %d, %d beside persons", crowded[0], crowded[1]);
 }
 
 }  // namespace
@@ -519,6 +591,7 @@ int main() {
       cmocka_unit_test(the_bounds_of_distance_rows_are_barriers),
       cmocka_unit_test(a_command_ahead_of_the_arm_takes_room_from_what_it_approaches),
       cmocka_unit_test(a_person_has_a_row_of_separation),
+      cmocka_unit_test(a_near_person_has_a_row_against_the_approach_of_the_arm_itself),
       cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),

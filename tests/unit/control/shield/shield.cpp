@@ -474,6 +474,51 @@ Target random_target(Random& random) {
   return target;
 }
 
+/// How much faster than the barrier of 15 1/s above 20 mm permits the arm comes nearer to a sphere at rest 12 mm beside
+/// it, m/s at most, while another one comes from the opposite side at 3 m/s.
+double too_fast_by_mps(const JointVector& q_rad, const Vector3& on_axis_m, const Vector3& away, double radius_m,
+                       Kind kind) {
+  Scene scene{q_rad, JointVector::Zero(7), JointVector::Zero(7), empty_set()};
+  const double sphere_m = 0.05, beside_m = radius_m + sphere_m + 0.012;
+  const Vector3 resting_m = on_axis_m + beside_m * away, coming_m = on_axis_m - (beside_m + 0.4) * away;
+  scene.add({resting_m, resting_m, sphere_m});
+  scene.add({coming_m, coming_m, sphere_m}, 3.0 * away);
+  for (int i = 0; i < 2; ++i) scene.set.obstacles[static_cast<size_t>(i)].kind = kind;
+  const auto to_resting_m = [&] {
+    scene.measure();
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const NearPair& pair : scene.clearance.near)
+      if (pair.now.obstacle == 0) least_m = std::min(least_m, pair.now.distance_m);
+    return least_m;
+  };
+  double largest_mps = 0.0, before_m = to_resting_m();
+  for (int cycle = 0; cycle < 14; ++cycle) {
+    scene.cycle();
+    const double now_m = to_resting_m();
+    const double permitted_mps = 15.0 * std::max(0.0, before_m - 0.02);
+    largest_mps = std::max(largest_mps, (before_m - now_m) / kPeriod_s - permitted_mps);
+    before_m = now_m;
+  }
+  return largest_mps;
+}
+
+void an_arm_does_not_evade_one_limb_of_a_person_into_another(void**) {
+  Random random(21);
+  int things = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const JointVector q_rad = random.configuration(model().arm, 0.7);
+    const LinkPoses poses = forward_kinematics(model().arm, q_rad);
+    const LinkShape& shape = model().arm.shapes.back();
+    const Capsule link = transformed(poses, shape);
+    const Vector3 on_axis_m = 0.5 * (link.start + link.end);
+    const Vector3 away = (link.end - link.start).cross(random.direction()).normalized();
+    const double person_mps = too_fast_by_mps(q_rad, on_axis_m, away, link.radius_m, Kind::kPerson);
+    check(person_mps < 0.05, "trial %d: %g m/s", trial, person_mps);
+    things += too_fast_by_mps(q_rad, on_axis_m, away, link.radius_m, Kind::kThing) > 0.1;
+  }
+  check(things > 50, "only %d things are approached", things);
+}
+
 void in_any_state_the_arm_can_follow_the_command_of_a_cycle(void**) {
   Random random(7);
   Scene scene{{}, {}, {}, empty_set()};
@@ -527,6 +572,7 @@ int main() {
       cmocka_unit_test(an_arm_driven_toward_a_static_obstacle_stops_before_it),
       cmocka_unit_test(in_contact_the_distance_only_grows),
       cmocka_unit_test(between_two_obstacles_the_slack_is_the_least_possible),
+      cmocka_unit_test(an_arm_does_not_evade_one_limb_of_a_person_into_another),
       cmocka_unit_test(in_any_state_the_arm_can_follow_the_command_of_a_cycle),
       cmocka_unit_test(an_arm_whose_shield_fails_comes_to_rest),
   };
