@@ -62,7 +62,7 @@ class ProximityOfGuides {
     for (size_t k = 0; k < kInstants; ++k) add_persons(from, after_s(k), at_instants_[k]);
   }
 
-  /// At least least_s where it is no less than that.
+  /// Stops, and returns what it has, once the sum is least_s or more.
   double cost_s(const Guide& guide, double least_s) const {
     double sum_s = kProximityCost_s * proximity(guide.position_rad[guide.knots - 1], in_the_end_);
     for (size_t k = 0; k < kInstants && sum_s < least_s; ++k)
@@ -245,8 +245,9 @@ Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
     Guide guide = stay;
     append(guide, random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]));
+    if (!ends_in_time(from, guide)) continue;
     const double cost_s = proximity.cost_s(guide, least_s);
-    if (cost_s >= least_s || !ends_in_time(from, guide) || !is_clear(from, guide)) continue;
+    if (cost_s >= least_s || !is_clear(from, guide)) continue;
     least_s = cost_s;
     best = guide;
   }

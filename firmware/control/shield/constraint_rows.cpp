@@ -42,11 +42,11 @@ constexpr double kLinksWeight = 512.0;
 constexpr double kPersonsWeight = 64.0;
 constexpr double kNearPerson_m = 0.05;
 
-/// So many rows of each tier give no place to the other tiers: beside persons, so that separation from them remains
-/// where hard and pass rows would fill the list, and otherwise.
-using Shares = std::array<int, kTiers>;
-constexpr Shares kSharesBesidePersons{24, 16, 16}, kShares{kMaxRows, 0, 0};
-static_assert(kSharesBesidePersons[0] + kSharesBesidePersons[1] + kSharesBesidePersons[2] == kMaxRows);
+/// Places of a list that are reserved for each tier. Beside persons, so that separation from them remains where hard
+/// and pass rows alone would fill the list.
+using Places = std::array<int, kTiers>;
+constexpr Places kReservedBesidePersons{24, 16, 16}, kNoneReserved{};
+static_assert(kReservedBesidePersons[0] + kReservedBesidePersons[1] + kReservedBesidePersons[2] == kMaxRows);
 
 /// The least value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {
@@ -66,7 +66,7 @@ bool is_within(const VelocityRange& inner, const VelocityRange& outer) {
 /// largest violation by the worst velocity of the range are kept.
 class RowFiller {
  public:
-  RowFiller(ConstraintRows& rows, const Shares& shares) : rows_(rows), shares_(shares) {}
+  RowFiller(ConstraintRows& rows, const Places& reserved) : rows_(rows), reserved_(reserved) {}
 
   void add(const JointVector& row, double bound, Tier tier, double violation_mps, double other_bound = 0.0) {
     if (!rows_.is_full()) {
@@ -88,15 +88,15 @@ class RowFiller {
  private:
   static size_t index(Tier tier) { return static_cast<size_t>(tier); }
 
-  /// The tier that gives a place in the full list to a row of `tier`: the last one with more than its share. A tier
-  /// that has its own share gets none from the tiers before it.
+  /// The tier that gives a place in the full list to a row of `tier`: the last one that has more than are reserved for
+  /// it. The tiers before `tier` give it only what is reserved for it.
   Tier yielding_tier(Tier tier) const {
-    const bool within_share = count_[index(tier)] < shares_[index(tier)];
+    const bool is_reserved = count_[index(tier)] < reserved_[index(tier)];
     for (const Tier other : {Tier::kComfort, Tier::kPass, Tier::kHard})
-      if ((within_share || other > tier) && count_[index(other)] > shares_[index(other)]) return other;
+      if ((is_reserved || other > tier) && count_[index(other)] > reserved_[index(other)]) return other;
     return tier;
   }
-  /// Index of the tier's row with the least violation.
+  /// Index of the tier's row with the least violation; -1 if the tier has none.
   int least_violated(Tier tier) {
     int& least = least_violated_[index(tier)];
     if (least >= 0) return least;
@@ -106,7 +106,7 @@ class RowFiller {
   }
 
   ConstraintRows& rows_;
-  const Shares& shares_;
+  const Places& reserved_;
   BoundedList<double, kMaxRows> violations_mps_;
   std::array<int, kTiers> count_{};                     ///< of each tier
   std::array<int, kTiers> least_violated_{-1, -1, -1};  ///< least_violated(); -1: not known
@@ -157,8 +157,8 @@ class RowMaker {
         range_(range),
         within_(is_within(range, sustainable)),
         rows_(rows),
-        plan_(rows.plan, keeps_separation(input) ? kSharesBesidePersons : kShares),
-        step_(rows.step, kShares) {}
+        plan_(rows.plan, keeps_separation(input) ? kReservedBesidePersons : kNoneReserved),
+        step_(rows.step, kNoneReserved) {}
 
   void add_self(const SelfPair& self, const JointVector& nominal_radps) {
     const BodyShape &a = shape(self.first), &b = shape(self.second);
@@ -193,7 +193,7 @@ class RowMaker {
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
-    if (is_person(pair) && room < kNearPerson_m)
+    if (is_person(input_, pair) && room < kNearPerson_m)
       add_hard(row, least, room, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
@@ -235,8 +235,6 @@ class RowMaker {
   }
 
  private:
-  bool is_person(const NearPair& pair) const { return input_.obstacles.at(pair.now.obstacle).kind == Kind::kPerson; }
-
   /// In place of comfort for a person (constraint_rows.h). least: the least value of the row, m/s.
   void add_separation(const JointVector& row, double least, double approaching_mps, double distance_m) {
     const double most_mps = -least_mps(-row, sustainable_);

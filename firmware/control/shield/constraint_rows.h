@@ -62,8 +62,8 @@ constexpr int kMaxRows = 56;
 
 /// The rows that some velocity within the range violates. If there are more than kMaxRows, a hard row is kept before a
 /// pass row, a pass row before a comfort row, and within a tier those with the largest b - min (a q') over the range.
-/// While the arm keeps separation from a person near it, the plan has room for 24 hard, 16 pass and 16 comfort rows
-/// before that order applies.
+/// While the arm keeps separation from a person near it, 24 places of the plan are reserved for hard rows, 16 for pass
+/// rows and 16 for comfort rows; that order applies to the places that a tier leaves free.
 using ConstraintRows = BoundedList<ConstraintRow, kMaxRows>;
 
 /// The largest bound of the pass rows, m/s; 0 if none is positive.

@@ -29,9 +29,14 @@ struct ShieldInput {
   double step_tool_weight = 0.0;  ///< w of the second programme, 1/m2; 0: the joints follow the plan one by one
 };
 
+/// Whether the obstacle of a pair is a person.
+inline bool is_person(const ShieldInput& input, const NearPair& pair) {
+  return input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson;
+}
+
 /// Whether a link keeps separation from the obstacle of a pair, a person, in place of comfort.
 inline bool keeps_separation(const ShieldInput& input, const NearPair& pair) {
-  return input.person_weight > 0.0 && input.obstacles.at(pair.now.obstacle).kind == Kind::kPerson;
+  return input.person_weight > 0.0 && is_person(input, pair);
 }
 
 /// Whether a link keeps separation from any person.

@@ -490,20 +490,20 @@ std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& n
     for (const ConstraintRow& row : scene.rows_of(pair))
       if (!separates || row.tier != Tier::kComfort) all.push_back(row);
     if (!separates) continue;
-    for (const ConstraintRow& row : scene.rows(range))
+    for (const ConstraintRow& row : scene.rows(range))  // of the same pair, which rows_of() has set
       if (row.tier == Tier::kComfort) all.push_back(row);
   }
   return all;
 }
 
-/// So many rows of each tier have a place before the order of the tiers applies.
-using Shares = std::array<size_t, kTiers>;
-constexpr Shares kBesidePersons{24, 16, 16}, kOtherwise{0, 0, 0};
+/// Places that are reserved for each tier.
+using Places = std::array<size_t, kTiers>;
+constexpr Places kBesidePersons{24, 16, 16}, kNoneReserved{};
 
 /// Checks that the rows kept are those that some velocity in the range does not meet; of too many, of each tier the
 /// most urgent. Returns whether they are too many.
 bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kept, const VelocityRange& range,
-                const Shares& shares, int trial) {
+                const Places& reserved, int trial) {
   const auto violation = [&](const ConstraintRow& row) {
     const bool is_weighed = std::any_of(all.begin(), all.end(), [&](const ConstraintRow& one) {
       return one.tier == Tier::kHard && row.tier == Tier::kHard && row.row == 64.0 * one.row;
@@ -516,12 +516,12 @@ bool check_kept(const std::vector<ConstraintRow>& all, const ConstraintRows& kep
   size_t count = 0, room = kMaxRows;
   for (size_t tier = 0; tier < kTiers; ++tier) {
     count += relevant[tier].size();
-    room -= std::min(shares[tier], relevant[tier].size());
+    room -= std::min(reserved[tier], relevant[tier].size());
   }
   assert_int_equal(kept.size(), std::min<size_t>(kMaxRows, count));
   for (size_t tier = 0; tier < kTiers; ++tier) {
     std::vector<ConstraintRow>& rows = relevant[tier];
-    const size_t more = rows.size() - std::min(shares[tier], rows.size()), granted = std::min(more, room);
+    const size_t more = rows.size() - std::min(reserved[tier], rows.size()), granted = std::min(more, room);
     room -= granted;
     const size_t keeps = rows.size() - more + granted;
     std::sort(rows.begin(), rows.end(),
@@ -577,8 +577,8 @@ void only_rows_that_every_velocity_meets_and_the_least_urgent_are_skipped(void**
     scene.clearance.near.clear();
     for (const NearPair& pair : near) scene.clearance.near.add(pair);
     const RowSets rows = scene.row_sets(sustainable, range);
-    crowded[has_person] += check_kept(all, rows.plan, sustainable, has_person ? kBesidePersons : kOtherwise, trial);
-    check_kept(hard, rows.step, range, kOtherwise, trial);
+    crowded[has_person] += check_kept(all, rows.plan, sustainable, has_person ? kBesidePersons : kNoneReserved, trial);
+    check_kept(hard, rows.step, range, kNoneReserved, trial);
   }
   check(crowded[0] > 20 && crowded[1] > 20, "only %d, %d beside persons", crowded[0], crowded[1]);
 }
