@@ -9,6 +9,7 @@
 #include "firmware/foresight/inverse_kinematics.h"
 #include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
+#include "firmware/foresight/segment_to_rest.h"
 #include "firmware/foresight/self_motion.h"
 #include "firmware/model/prediction.h"
 
@@ -121,14 +122,13 @@ Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   return guide;
 }
 
-/// Appends a knot as early as the limits allow: the profile of a guide reaches 1.5 distance / duration in velocity and
-/// 6 distance / duration^2 in acceleration.
+/// Appends a knot at rest as early as the limits allow.
 void Planner::append(Guide& guide, const JointVector& q_rad) const {
-  const JointLimits& limits = model_.arm.limits;
-  const JointVector distance_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();
-  const double by_velocity_s = 1.5 * distance_rad.cwiseQuotient(limits.velocity_radps).maxCoeff();
-  const double by_acceleration_s = std::sqrt(6.0 * distance_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff());
-  guide.add(guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kLimitShare, q_rad);
+  const int last = guide.knots - 1;
+  const JointVector displacement_rad = q_rad - guide.position_rad[last];
+  const double duration_s =
+      duration_to_rest_s(model_.arm.limits, kLimitShare, displacement_rad, guide.velocity_radps[last]);
+  guide.add(guide.end_s() + duration_s, q_rad);
 }
 
 /// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).
@@ -239,13 +239,14 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
   const ProximityOfGuides proximity(model_, from);
-  const Guide stay = start_of(from, ForesightStatus::kWaiting);
-  double least_s = proximity.cost_s(stay, std::numeric_limits<double>::infinity());
+  Guide start = start_of(from, ForesightStatus::kWaiting);
+  double least_s = proximity.cost_s(start, std::numeric_limits<double>::infinity());  // of the arm that stays
+  start.velocity_radps[0] = from.arm.velocity_radps;
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
-    Guide guide = stay;
+    Guide guide = start;
     append(guide, random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]));
-    if (!ends_in_time(from, guide)) continue;
+    if (!ends_in_time(from, guide) || !turns_within_limits(model_.arm.limits, guide)) continue;
     const double cost_s = proximity.cost_s(guide, least_s);
     if (cost_s >= least_s || !is_clear(from, guide)) continue;
     least_s = cost_s;

@@ -34,7 +34,7 @@ void the_arm_makes_room_for_a_person_and_not_for_a_thing(void**) {
   assert_string_equal(person.commands.violation().c_str(), "");
 }
 
-/// S = person_clearance + v / person_gain. Until then the shield does not correct the law.
+/// S = person_clearance + v / person_gain, v at most 1 m/s. Until then the shield does not correct the law.
 void the_arm_gives_way_from_the_protective_distance_on(void**) {
   for (const double speed_mps : {0.2, 0.5, 1.0, 2.0}) {
     ClosedLoop loop = beside(Kind::kPerson);
@@ -45,7 +45,7 @@ void the_arm_gives_way_from_the_protective_distance_on(void**) {
     person.velocity_mps = -speed_mps * outward;
     while (loop.now_s() < 30.0 && loop.last.report.shield_correction_radps < 0.005) loop.cycle();
     const ShieldSettings& shield = loop.model.settings.shield;
-    const double protective_m = shield.person_clearance_m + speed_mps / shield.person_gain_per_s;
+    const double protective_m = shield.person_clearance_m + std::min(speed_mps, 1.0) / shield.person_gain_per_s;
     const double period_m = speed_mps * loop.model.settings.period_s();
     check_near_because(loop.last.report.clearance_m, protective_m, 0.01 + 2.0 * period_m, "%g m/s", speed_mps);
   }

@@ -30,6 +30,11 @@ constexpr double kLeastSpeed_mps = 0.02;
 /// The longest time by which an arm is assumed to lag behind its command.
 constexpr double kLongestLag_s = 0.1;
 
+/// The largest approach of a person that separation counts, about that of a walker. Limbs that are faster turn back
+/// within tenths of a second: an arm that made room for each of their strokes would be on its way when the next one,
+/// or the other person, comes from elsewhere. What does hit the arm counts in the other tiers.
+constexpr double kLargestApproach_mps = 1.0;
+
 /// A row that is violated by less is met.
 constexpr double kViolated_mps = 1e-4;
 
@@ -37,10 +42,12 @@ constexpr double kViolated_mps = 1e-4;
 /// power of two: nothing is rounded.
 constexpr double kLinksWeight = 512.0;
 
-/// The same for the rows that keep the arm from approaching a near person by itself. Nearer than this above the
-/// required clearance a person has such a row.
+/// The same for the rows that keep the arm from approaching a near person by itself. They keep the required clearance,
+/// while the arm keeps separation kBesidePerson_m more: a stroke of 4 m/s takes 30 ms for that. A person has such a row
+/// nearer than kNearPerson_m above what it keeps.
 constexpr double kPersonsWeight = 64.0;
 constexpr double kNearPerson_m = 0.05;
+constexpr double kBesidePerson_m = 0.1;
 
 /// Places of a list that are reserved for each tier. Beside persons, so that separation from them remains where hard
 /// and pass rows alone would fill the list.
@@ -193,8 +200,9 @@ class RowMaker {
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
-    if (is_person(input_, pair) && room < kNearPerson_m)
-      add_hard(row, least, room, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
+    const double beside_person = separates ? room - kBesidePerson_m : room;
+    if (is_person(input_, pair) && beside_person < kNearPerson_m)
+      add_hard(row, least, beside_person, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -217,7 +225,7 @@ class RowMaker {
 
   void add_pass(const NearPair& pair) {
     const ClosestApproach& approach = pair.approach;
-    if (approach.time_s <= 0.0) return;
+    if (approach.time_s <= 0.0 || !approach_counts(input_, pair)) return;
     const Vector3 side = approach.head_on ? chosen_side(pair) : approach.normal;
     const JointVector row = axes_.row(body_of(pair), approach.on_arm, side);
     const double least = least_mps(row, sustainable_);
@@ -239,8 +247,8 @@ class RowMaker {
   void add_separation(const JointVector& row, double least, double approaching_mps, double distance_m) {
     const double most_mps = -least_mps(-row, sustainable_);
     if (most_mps < kLeastSpeed_mps) return;
-    const double demand_mps =
-        approaching_mps + barrier(settings_.person_gain_per_s, distance_m, settings_.person_clearance_m);
+    const double demand_mps = std::min(approaching_mps, kLargestApproach_mps) +
+                              barrier(settings_.person_gain_per_s, distance_m, settings_.person_clearance_m);
     const double touched_mps = settings_.person_gain_per_s * settings_.person_clearance_m;
     const double bound_mps = std::min(demand_mps * std::min(1.0, most_mps / touched_mps), most_mps);
     const double scale = std::sqrt(input_.person_weight / input_.comfort_weight);

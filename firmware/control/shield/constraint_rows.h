@@ -28,17 +28,19 @@ namespace sidestep {
 ///   of the speed by which obstacles do. A pair of links has about 1 mm of clearance, an obstacle 20 mm. Of the 3 m/s
 ///   that an obstacle may demand links then yield 6 mm/s, which hard_gain stops 0.4 mm below c / 2.
 ///   A person with r < 0.05 m has a second hard row, b = min(b1, b2, 0) with k v = min(v, 0), and row and b are
-///   multiplied by 64: where another limb cannot be met, the arm does not evade it into this one.
+///   multiplied by 64: where another limb cannot be met, the arm does not evade it into this one. While the arm keeps
+///   separation, r is 0.1 m less in this row: a hand that rests there may stroke at any time.
 ///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
 ///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
 ///   obstacle's speed does not count in these. So have two links whose distance is less than 30 mm above c.
 /// pass: for an approaching obstacle; n, J_p and a are those at the time t.
 ///     b = (pass_clearance - m) / max(t - pass_reaction, 0.05 s)    if m < pass_clearance
 ///     b = -pass_gain (m - pass_clearance)                          otherwise
+///   There is none for a person from whom the arm keeps separation while t > 0.3 s (approach_counts()).
 /// comfort:
 ///     b = v - comfort_gain (d - comfort_clearance)
 /// separation, in place of comfort for a person in TRACK; with the largest speed a_max = max a q' over the range:
-///     b = min((v - person_gain (d - person_clearance)) min(1, a_max / v_0), a_max)
+///     b = min((min(v, 1 m/s) - person_gain (d - person_clearance)) min(1, a_max / v_0), a_max)
 ///   v_0 = person_gain person_clearance is the demand at the touch of a person at rest. Slower links are asked for the
 ///   same share of what they can do: a link that can hardly leave would otherwise use up the shared slack, and the
 ///   others would not move either. The row and b are multiplied by sqrt(person_weight / comfort_weight), so that

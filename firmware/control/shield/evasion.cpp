@@ -48,10 +48,12 @@ BoundedList<int, kMaxThreats> most_urgent_obstacles(const Clearance& clearance) 
   return urgent;
 }
 
-Threats find_threats(const ShieldSettings& settings, const Clearance& clearance, const ObstacleView& view) {
+Threats find_threats(const ShieldSettings& settings, const ShieldInput& input) {
+  const ObstacleView& view = input.obstacles;
   Threats threats;
   double least_m = settings.pass_clearance_m;
-  for (const NearPair& pair : clearance.near) {
+  for (const NearPair& pair : input.clearance.near) {
+    if (!approach_counts(input, pair)) continue;
     const ClosestApproach& approach = pair.approach;
     if (approach.distance_m < settings.pass_clearance_m) threats.last_s = std::max(threats.last_s, approach.time_s);
     if (approach.distance_m < least_m) {
@@ -59,7 +61,7 @@ Threats find_threats(const ShieldSettings& settings, const Clearance& clearance,
       threats.closest_s = approach.time_s;
     }
   }
-  for (const int index : most_urgent_obstacles(clearance)) {
+  for (const int index : most_urgent_obstacles(input.clearance)) {
     threats.obstacles.add(view.extrapolated(index));
     threats.allowance_m.add(settings.hard_clearance_m - hard_clearance_m(settings, doubt(view, index), 0.0));
   }
@@ -106,7 +108,7 @@ class RolloutCost {
         wanted_radps_(wanted_radps),
         deficit_weight_per_m_(deficit_weight_per_m(objective)),
         defers_(defers),
-        threats_(find_threats(settings, input.clearance, input.obstacles)),
+        threats_(find_threats(settings, input)),
         // A valid index: every rollout is kAfter_s longer than closest_s.
         worst_step_(static_cast<int>(threats_.closest_s / kStep_s)) {}
 

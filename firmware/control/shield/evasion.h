@@ -10,8 +10,8 @@ namespace sidestep {
 /// Rollout: the arm changes from the last commanded velocity to that of the candidate at its acceleration limits and
 /// keeps it, in steps of 70 ms. The obstacles of the near pairs move at constant velocity. At most 16 obstacles take
 /// part: those whose pairs have the least distances, now or at the closest approach. The rollout ends 0.2 s after the
-/// latest time of closest approach among the near pairs that come closer than pass_clearance. Pairs of links are not
-/// examined.
+/// latest time of closest approach that counts (approach_counts()) among the near pairs that come closer than
+/// pass_clearance. Pairs of links are not examined.
 ///
 /// Trigger: a pass row has b > 0, and the clearance in the plan's rollout falls below hard_clearance (for
 /// obstacles at rest: what they need, required_clearance.h). More than 0.3 s ahead the clearance may be less by 0.05 m

@@ -6,6 +6,7 @@
 
 #include "firmware/control/types/settings.h"
 #include "firmware/model/clearance.h"
+#include "firmware/model/prediction.h"
 #include "firmware/model/velocity_range.h"
 
 namespace sidestep {
@@ -43,6 +44,12 @@ inline bool keeps_separation(const ShieldInput& input, const NearPair& pair) {
 inline bool keeps_separation(const ShieldInput& input) {
   const auto& near = input.clearance.near;
   return std::any_of(near.begin(), near.end(), [&](const NearPair& pair) { return keeps_separation(input, pair); });
+}
+
+/// Whether the closest approach that is predicted for a pair counts. A person from whom the arm keeps separation keeps
+/// its velocity for kPersonCoast_s only (model/prediction.h): limbs turn back.
+inline bool approach_counts(const ShieldInput& input, const NearPair& pair) {
+  return pair.approach.time_s <= kPersonCoast_s || !keeps_separation(input, pair);
 }
 
 /// The result of the first programme: the joint velocity that the arm is to reach, before acceleration limits, and

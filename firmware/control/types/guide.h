@@ -26,9 +26,9 @@ constexpr int kMaxKnots = 32;
 
 /// A timed path in joint space, given by its knots. Between two knots every joint moves on the cubic that has the
 /// positions and velocities of both (Hermite); from rest to rest that is a straight line with the profile 3u^2 - 2u^3.
-/// At the first and the last knot the velocity is 0. After the last knot the law holds the tool at the target and keeps
-/// the joints near that knot as far as the tool's task leaves freedom; with kWaiting the arm stays at the last knot
-/// instead.
+/// At the last knot the velocity is 0, at the first one too unless the guide starts while the arm moves. After the last
+/// knot the law holds the tool at the target and keeps the joints near that knot as far as the tool's task leaves
+/// freedom; with kWaiting the arm stays at the last knot instead.
 struct Guide {
   ForesightStatus foresight_status = ForesightStatus::kDirect;
   GoalFinding goal = GoalFinding::kNone;   ///< for the report; the law disregards it
