@@ -53,7 +53,8 @@ double duration_to_rest_s(const JointLimits& limits, double share, const JointVe
     }
     return true;
   };
-  // A joint brakes no faster than at its limit, and no velocity at the start more than halves the duration.
+  // Lower bounds: a joint brakes no faster than at its limit, and a velocity at the start saves less than half of the
+  // duration from rest.
   const double braking_s = from_radps.cwiseAbs().cwiseQuotient(limits.acceleration_radps2).maxCoeff();
   double duration_s = std::max(0.5 * at_rest_s, braking_s);
   while (!is_long_enough(duration_s)) duration_s *= kLonger;

@@ -43,8 +43,8 @@ constexpr double kViolated_mps = 1e-4;
 constexpr double kLinksWeight = 512.0;
 
 /// The same for the rows that keep the arm from approaching a near person by itself. They keep the required clearance,
-/// while the arm keeps separation kBesidePerson_m more: a stroke of 4 m/s takes 30 ms for that. A person has such a row
-/// nearer than kNearPerson_m above what it keeps.
+/// while the arm keeps separation kBesidePerson_m more: a hand at 4 m/s covers both in 30 ms, before an arm that
+/// approaches has stopped. A person has such a row nearer than kNearPerson_m above what the row keeps.
 constexpr double kPersonsWeight = 64.0;
 constexpr double kNearPerson_m = 0.05;
 constexpr double kBesidePerson_m = 0.1;
@@ -200,9 +200,9 @@ class RowMaker {
     const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
-    const double beside_person = separates ? room - kBesidePerson_m : room;
-    if (is_person(input_, pair) && beside_person < kNearPerson_m)
-      add_hard(row, least, beside_person, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
+    const double to_person_m = separates ? room - kBesidePerson_m : room;
+    if (is_person(input_, pair) && to_person_m < kNearPerson_m)
+      add_hard(row, least, to_person_m, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
