@@ -117,7 +117,8 @@ void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
   if (track.centre.began()) track.velocities.clear();
   const Vector3 lead = lead_mps({now_s, obstacle.velocity_mps}, track.velocities);
   obstacle.mean_velocity_mps = mean_velocity_mps(obstacle, track, now_s);
-  if ((is_reported || track.centre.moves()) && obstacle.id > kNeighbourIds) obstacle.velocity_mps += lead;
+  if ((is_reported || track.centre.moves()) && obstacle.id > kNeighbourIds) obstacle.lead_mps = lead;
+  obstacle.velocity_mps += obstacle.lead_mps;
   if (capsule.is_sphere()) return;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
   if (half_axis_m.dot(track.half_axis_m) < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order

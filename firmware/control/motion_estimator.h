@@ -21,11 +21,12 @@ namespace sidestep {
 ///   the point's noise. An obstacle at rest keeps the velocity 0, whatever the noise.
 /// - A point that moves faster than 8 m/s between two reports is another obstacle under the same id: it begins anew.
 ///
-/// A linear velocity v, reported or estimated, becomes v + 0.2 s a (the lead, at most 0.5 m/s): whatever predicts at
-/// constant velocity thus follows an obstacle that turns or starts. The acceleration a is the slope of the velocities.
-/// Of a only what stands out from the noise counts: a (1 - (5 s / |a|)^2), or 0, with the standard deviation s of the
-/// slope. An obstacle at rest whose velocity is not reported has no lead, nor do the links of other arms: their sets
-/// are merged with others as they arrive, so that the lead would depend on the order of arrival.
+/// A linear velocity v, reported or estimated, becomes v + 0.2 s a (the lead, at most 0.5 m/s, Obstacle::lead_mps):
+/// whatever predicts at constant velocity thus follows an obstacle that turns or starts. The acceleration a is the
+/// slope of the velocities. Of a only what stands out from the noise counts: a (1 - (5 s / |a|)^2), or 0, with the
+/// standard deviation s of the slope. An obstacle at rest whose velocity is not reported has no lead, nor do the links
+/// of other arms: their sets are merged with others as they arrive, so that the lead would depend on the order of
+/// arrival.
 ///
 /// The mean velocity of a person is (p - m) / 0.5 s, where m is the exponential mean of the reported positions p with
 /// this time constant; below 0.15 m/s it is 0. Limbs swing about a body that walks on.

@@ -57,6 +57,7 @@ void ObstacleMemory::remember_change(RememberedObstacle before, const Obstacle& 
     before.obstacle.velocity_mps.setZero();
     before.obstacle.angular_velocity_radps.setZero();
     before.obstacle.mean_velocity_mps.setZero();
+    before.obstacle.lead_mps.setZero();
   }
   remember(before);
 }

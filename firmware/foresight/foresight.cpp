@@ -152,17 +152,18 @@ void Foresight::search_faster(const Snapshot& now) {
   if (candidate_.end_s() > now.now_s + expected_.away_s - kClearlyEarlier_s) candidate_ = Guide{};
 }
 
-/// In every other search an arm that persons keep from its target looks for a configuration farther away from them.
-bool Foresight::plans_retreat_from_persons(const Snapshot& now) {
-  if (!now.tracking || expected_.arrives || expected_.proximity_s <= kNearPersons_s) return false;
-  planned_retreat_from_persons_ = !planned_retreat_from_persons_;
-  return planned_retreat_from_persons_;
+/// Whether persons keep the arm from its target.
+bool Foresight::waits_for_persons(const Snapshot& now) const {
+  return now.tracking && !expected_.arrives && expected_.proximity_s > kNearPersons_s;
 }
 
 void Foresight::search(const Snapshot& now) {
   if (candidate_.knots > 0) return evaluate_candidate(now, kWorthAChange_s);
-  if (plans_retreat_from_persons(now)) candidate_ = planner_.plan_retreat_from_persons(now);
-  if (candidate_.knots > 0) return;
+  if (waits_for_persons(now)) {
+    planned_retreat_from_persons_ = !planned_retreat_from_persons_;
+    if (planned_retreat_from_persons_) candidate_ = planner_.plan_retreat_from_persons(now);
+    if (candidate_.knots > 0) return;
+  }
   candidate_ = now.tracking ? plan_to_goal(now) : Guide{};
   if (candidate_.knots > 0) return;
   if (expected_.collides && !prefers_self_motion(now)) candidate_ = planner_.plan_retreat(now);

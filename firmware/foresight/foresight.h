@@ -75,7 +75,7 @@ class Foresight {
   void search_faster(const Snapshot& now);
   void evaluate_candidate(const Snapshot& now, double worth_s);
   bool prefers_self_motion(const Snapshot& now) const;
-  bool plans_retreat_from_persons(const Snapshot& now);
+  bool waits_for_persons(const Snapshot& now) const;
   Guide plan_to_goal(const Snapshot& now);
   void adopt(const Guide& guide, const Forecast& forecast);
 

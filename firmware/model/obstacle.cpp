@@ -12,6 +12,7 @@ Obstacle transformed(const Eigen::Isometry3d& b_from_a, const Obstacle& obstacle
   seen.half_width_m = b_from_a.linear() * obstacle.half_width_m;
   seen.velocity_mps = b_from_a.linear() * obstacle.velocity_mps;
   seen.mean_velocity_mps = b_from_a.linear() * obstacle.mean_velocity_mps;
+  seen.lead_mps = b_from_a.linear() * obstacle.lead_mps;
   seen.angular_velocity_radps = b_from_a.linear() * obstacle.angular_velocity_radps;
   return seen;
 }

@@ -42,6 +42,7 @@ struct Obstacle {
   double half_thickness_m = 0.0;  ///< half the shortest edge of a box, which may be 0; radius of a cylinder; else 0
   Kind kind = Kind::kThing;
   Vector3 mean_velocity_mps = Vector3::Zero();  ///< of the centre of a person that walks; 0: unknown or negligible
+  Vector3 lead_mps = Vector3::Zero();  ///< the part of velocity_mps that it will only have shortly (MotionEstimator)
 };
 
 /// Whether it moves, turns or walks, however slowly.

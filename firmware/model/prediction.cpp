@@ -84,6 +84,7 @@ void advance(Obstacle& obstacle, double dt_s, double after_s) {
   if (obstacle.kind == Kind::kPerson && after_s > kPersonCoast_s) {
     if (after_s > kPersonWalk_s) obstacle.mean_velocity_mps.setZero();
     obstacle.velocity_mps = obstacle.mean_velocity_mps;
+    obstacle.lead_mps.setZero();
     obstacle.angular_velocity_radps.setZero();
   }
   obstacle = extrapolated(obstacle, dt_s);

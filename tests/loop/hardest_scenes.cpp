@@ -134,6 +134,15 @@ void obstacles_that_change_their_course_are_evaded(void**) {
   }
 }
 
+/// In these scenes an obstacle beside a link begins to recede. At the velocity that it was about to have, the link
+/// followed it faster than it left, and touched.
+void obstacles_that_begin_to_recede_are_not_followed_too_soon(void**) {
+  for (const SceneName& scene : {SceneName{"erratic", 3001834}, {"erratic", 1000435}}) {
+    const TrialMetrics metrics = run_scene(scene, true);
+    check(metrics.clearance_m > 0.0, "%s:%lu: %g m", scene.family, scene.seed, metrics.clearance_m);
+  }
+}
+
 void check_findings(const std::string& family, int count) {
   const Model model = load_config("firmware/config/lwa3.yaml", {}).model;
   for (int i = 1; i <= count; ++i) {
@@ -170,6 +179,7 @@ int main() {
       cmocka_unit_test(moving_poses_are_followed),
       cmocka_unit_test(moving_poses_are_followed_among_obstacles),
       cmocka_unit_test(obstacles_that_change_their_course_are_evaded),
+      cmocka_unit_test(obstacles_that_begin_to_recede_are_not_followed_too_soon),
       cmocka_unit_test(foresight_arrives_without_contact),
       cmocka_unit_test(an_arm_at_rest_retreats_before_obstacles_trap_it),
       cmocka_unit_test(an_arm_at_its_target_retreats_until_the_danger_is_over),

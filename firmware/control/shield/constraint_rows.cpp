@@ -144,6 +144,12 @@ double hard_barrier(const ShieldSettings& settings, const ShieldInput& input, co
   return std::max(by_gain_mps, std::min(closing_mps, 0.0) - braked_mps);
 }
 
+/// The speed at which an obstacle approaches along a normal, m/s; approaching_mps: with its lead. One that only begins
+/// to recede makes no room yet: the arm would follow it faster than it leaves.
+double certain_approach_mps(const Obstacle& obstacle, const Vector3& normal, double approaching_mps) {
+  return approaching_mps + std::max(0.0, -normal.dot(obstacle.lead_mps));
+}
+
 /// The room of two links. A posture that is nearer than the clearance may come no nearer, but it need not retreat
 /// unless it is nearer than half of it.
 double self_room_m(double distance_m, double clearance_m) {
@@ -197,12 +203,14 @@ class RowMaker {
     const double passing = std::clamp((pair.approach.distance_m - settings_.hard_clearance_m) /
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
-    const double threat_mps = approaching_mps > 0.0 ? (1.0 - passing) * approaching_mps : approaching_mps;
+    const Obstacle& obstacle = input_.obstacles.at(pair.now.obstacle);
+    const double certain_mps = certain_approach_mps(obstacle, pair.now.normal, approaching_mps);
+    const double threat_mps = certain_mps > 0.0 ? (1.0 - passing) * certain_mps : certain_mps;
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
     const double to_person_m = separates ? room - kBesidePerson_m : room;
     if (is_person(input_, pair) && to_person_m < kNearPerson_m)
-      add_hard(row, least, to_person_m, std::min(approaching_mps, 0.0), kPersonsWeight, 0.0);
+      add_hard(row, least, to_person_m, 0.0, kPersonsWeight, 0.0);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -218,7 +226,8 @@ class RowMaker {
     for (const Proximity& next : proximities_after_turn(link, present, pair.now, turn_rad)) {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
-      const double approaching_mps = next.normal.dot(velocity_at(present, next.on_obstacle));
+      const double approaching_mps =
+          certain_approach_mps(present, next.normal, next.normal.dot(velocity_at(present, next.on_obstacle)));
       add_hard(row, least_mps(row, sustainable_), room_m(row, next.distance_m, pair), std::min(approaching_mps, 0.0));
     }
   }

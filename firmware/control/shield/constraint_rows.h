@@ -16,6 +16,8 @@ namespace sidestep {
 ///     b1 = k v - hard_gain r            the clearance decays at most exponentially
 ///     b2 = min(k v, 0) - v_stop(r)      the arm can stop within r; only for r > 0. The speed of an approaching
 ///                                       obstacle does not count here, that of a receding one does
+///   v is at least what it would be without the lead (Obstacle::lead_mps): an obstacle that is expected to recede is
+///   not followed before it does.
 ///   k is the counted share of the obstacle's speed. For a receding obstacle k = 1. For an approaching one k falls
 ///   linearly from 1 to 0 while m rises from hard_clearance to pass_clearance: an obstacle that will pass is no threat.
 ///   v_stop(r) is the largest speed that can be braked within r, one period of travel included, at the deceleration
@@ -27,9 +29,10 @@ namespace sidestep {
 ///   b are multiplied by 512: where an obstacle's approach cannot be met and the slack is shared, links yield by 1/512
 ///   of the speed by which obstacles do. A pair of links has about 1 mm of clearance, an obstacle 20 mm. Of the 3 m/s
 ///   that an obstacle may demand links then yield 6 mm/s, which hard_gain stops 0.4 mm below c / 2.
-///   A person with r < 0.05 m has a second hard row, b = min(b1, b2, 0) with k v = min(v, 0), and row and b are
-///   multiplied by 64: where another limb cannot be met, the arm does not evade it into this one. While the arm keeps
-///   separation, r is 0.1 m less in this row: a hand that rests there may stroke at any time.
+///   A person with r < 0.05 m has a second hard row, b = min(b1, b2, 0) with v = 0, and row and b are multiplied by 64:
+///   where another limb cannot be met, the arm does not evade it into this one, and it does not follow one that
+///   recedes. While the arm keeps separation, r is 0.1 m less in this row: a hand that rests there may stroke at any
+///   time.
 ///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
 ///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
 ///   obstacle's speed does not count in these. So have two links whose distance is less than 30 mm above c.

@@ -135,7 +135,9 @@ void a_reported_velocity_that_changes_is_led_by_its_change_in_a_fifth_of_a_secon
         const double t_s = k / rate_hz;
         Obstacle reported = ball(1, t_s * start_mps + 0.5 * t_s * t_s * acceleration_mps2);
         reported.velocity_mps = start_mps + t_s * acceleration_mps2;
-        lead = scene.send({reported}, 1.0 / rate_hz).velocity_mps - reported.velocity_mps;
+        const Obstacle& last = scene.send({reported}, 1.0 / rate_hz);
+        lead = last.velocity_mps - reported.velocity_mps;
+        check_near(last.lead_mps, lead, 1e-12);
       }
       check_near(lead, std::min(kLead_s, kLargest_mps / size_mps2) * acceleration_mps2, 1e-6);
     }

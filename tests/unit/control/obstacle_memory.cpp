@@ -38,7 +38,7 @@ struct Scene {
 void an_obstacle_that_jumps_also_counts_at_its_last_position_for_a_while(void**) {
   Scene scene;
   Obstacle wrong = ball(1, Vector3(0, 0, 1));  // position and velocity are both wrong
-  wrong.velocity_mps = wrong.mean_velocity_mps = Vector3(100, 0, 0);
+  wrong.velocity_mps = wrong.mean_velocity_mps = wrong.lead_mps = Vector3(100, 0, 0);
   assert_int_equal(scene.send({wrong, ball(2, Vector3(1, 0, 1))}), 0);
   int periods = 0;
   while (scene.send({ball(1, Vector3(0, 3, 1)), ball(2, Vector3(1, 0, 1))}) == 1 && ++periods < 1000) {
@@ -46,6 +46,7 @@ void an_obstacle_that_jumps_also_counts_at_its_last_position_for_a_while(void**)
     check_near(scene.last().capsule.start, Vector3(0, 0, 1), 0);
     check_near(scene.last().velocity_mps, Vector3::Zero(), 0);
     check_near(scene.last().mean_velocity_mps, Vector3::Zero(), 0);
+    check_near(scene.last().lead_mps, Vector3::Zero(), 0);
   }
   check_near((periods + 1) * kPeriod_s, kMemory_s, 1.01 * kPeriod_s);
 }

@@ -31,6 +31,22 @@ void a_person_keeps_its_velocity_for_300_ms_then_walks_until_2_s_and_rests(void*
   }
 }
 
+/// With the velocity that it had, a person loses the lead of that velocity.
+void a_lead_lasts_as_long_as_the_velocity_that_it_is_part_of(void**) {
+  for (const double after_s : {0.0, 0.2, 0.3, 0.31, 1.0, 3.0}) {
+    for (const Kind kind : {Kind::kThing, Kind::kPerson}) {
+      Obstacle obstacle = sphere_obstacle(Vector3(1, 2, 3), 0.05);
+      obstacle.kind = kind;
+      obstacle.velocity_mps = Vector3(0.5, 0, 0);
+      obstacle.lead_mps = Vector3(0.3, 0, 0);
+      advance(obstacle, 0.01, after_s);
+      const bool has_turned = kind == Kind::kPerson && after_s > 0.3;
+      check_near(obstacle.lead_mps, Vector3(has_turned ? 0.0 : 0.3, 0, 0), 0.0);
+      check_near(obstacle.velocity_mps, Vector3(has_turned ? 0.0 : 0.5, 0, 0), 0.0);
+    }
+  }
+}
+
 void clearance_after_a_while_is_the_exact_one_to_the_predicted_obstacles(void**) {
   Random random(5);
   for (int trial = 0; trial < 1000; ++trial) {
@@ -67,6 +83,7 @@ void clearance_after_a_while_is_the_exact_one_to_the_predicted_obstacles(void**)
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(a_person_keeps_its_velocity_for_300_ms_then_walks_until_2_s_and_rests),
+      cmocka_unit_test(a_lead_lasts_as_long_as_the_velocity_that_it_is_part_of),
       cmocka_unit_test(clearance_after_a_while_is_the_exact_one_to_the_predicted_obstacles),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -253,7 +253,7 @@ void a_person_has_a_row_of_separation(void**) {
 }
 
 /// Beside that, a person who is near has a row of 64 times the weight, which only keeps the arm from approaching: to
-/// the clearance, while it keeps separation to 0.1 m more.
+/// the clearance, while it keeps separation to 0.1 m more. That the person recedes gives it no room.
 void a_near_person_has_a_row_against_the_approach_of_the_arm_itself(void**) {
   Random random(12);
   int seen[2] = {}, far[2] = {};
@@ -270,10 +270,7 @@ void a_near_person_has_a_row_against_the_approach_of_the_arm_itself(void**) {
     const JointVector row = jacobian.transpose() * pair.now.normal;
     const ConstraintRows rows = scene.rows_of(pair, true);
     const double room_m = pair.now.distance_m - kSettings.hard_clearance_m - 0.1 * separates;
-    const double away_mps = std::min(0.0, pair.now.normal.dot(pair.velocity_mps));
-    const double by_gain_mps = away_mps - kSettings.hard_gain_per_s * room_m;
-    const double bound_mps =
-        std::min(0.0, room_m > 0.0 ? std::max(by_gain_mps, away_mps + hard_bound(row, room_m)) : by_gain_mps);
+    const double bound_mps = std::min(0.0, hard_bound(row, room_m));
     const auto is_it = [&](const ConstraintRow& one) {
       return (one.row - 64.0 * row).norm() < 1e-5 && std::abs(one.bound - 64.0 * bound_mps) < 1e-5;
     };
@@ -312,6 +309,30 @@ void an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it(void*
     check(bounds[0] <= bounds[1] && bounds[1] <= bounds[2], "trial %d: %g, %g, %g", trial, bounds[0], bounds[1],
           bounds[2]);
   }
+}
+
+/// Of the velocities with and without the lead, the hard row has the one that approaches faster.
+void a_lead_raises_the_bound_and_never_lowers_it(void**) {
+  Random random(14);
+  int receding = 0, approaching = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    Scene scene(random.configuration(lwa3()));
+    const int shape = moving_shape(random);
+    Obstacle obstacle = random_obstacle(transformed(scene.poses, shape_of(shape)), random);
+    obstacle.lead_mps = random.inside(-0.5, 0.5);
+    scene.add(obstacle);
+    NearPair pair = pair_of(scene.poses, shape, 0, obstacle);
+    const PointJacobian jacobian = point_jacobian(scene.poses, shape_of(shape).body, pair.now.on_arm);
+    if (pair.now.distance_m > kSettings.range_m || !joints_matter(jacobian.transpose() * pair.now.normal)) continue;
+    const double bound_mps = scene.rows_of(pair)[0].bound;
+    scene.set->obstacles[0].lead_mps.setZero();
+    const double with_mps = scene.rows_of(pair)[0].bound;
+    pair.velocity_mps -= obstacle.lead_mps;
+    const double without_mps = scene.rows_of(pair)[0].bound;
+    check_near(bound_mps, std::max(with_mps, without_mps), 1e-12);
+    ++(with_mps < without_mps ? receding : approaching);
+  }
+  check(receding > 100 && approaching > 100, "%d receding, %d approaching", receding, approaching);
 }
 
 /// The closest approach is that of the obstacle's nearest point now, which `point` represents.
@@ -600,6 +621,7 @@ int main() {
       cmocka_unit_test(a_person_has_a_row_of_separation),
       cmocka_unit_test(a_near_person_has_a_row_against_the_approach_of_the_arm_itself),
       cmocka_unit_test(an_approaching_obstacle_raises_the_bound_and_a_receding_one_lowers_it),
+      cmocka_unit_test(a_lead_raises_the_bound_and_never_lowers_it),
       cmocka_unit_test(pass_rows_are_the_gradients_of_the_closest_approach),
       cmocka_unit_test(a_turning_obstacle_counts_with_the_velocity_of_its_nearest_point),
       cmocka_unit_test(turning_links_have_hard_rows_for_the_next_points),
