@@ -38,7 +38,7 @@ struct Forecast {
 /// Simulates the next foresight.horizon_s seconds, in the mode of the snapshot, with the controller's own step() and an
 /// ideal arm, which follows each command exactly. The period is 10 ms for 0.6 s and then 30 ms, unless the controller's
 /// is longer. Obstacles move as predicted_obstacle(), the target as predicted_target(). A simulation ends early when
-/// the arm rests and nothing could move it any more. About 600 kB: lives on the heap.
+/// the arm rests and nothing could move it any more. About 800 kB: lives on the heap.
 class Rollout {
  public:
   explicit Rollout(const Model& model);

@@ -51,7 +51,7 @@ inline bool is_moving(const Obstacle& obstacle) {
          !obstacle.mean_velocity_mps.isZero(0.0);
 }
 
-/// The full set of obstacles at one instant. About 600 kB: it lives in a triple buffer or on the heap, never on a
+/// The full set of obstacles at one instant. About 800 kB: it lives in a triple buffer or on the heap, never on a
 /// stack.
 struct ObstacleSet {
   int count = 0;

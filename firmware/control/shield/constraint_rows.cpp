@@ -144,10 +144,11 @@ double hard_barrier(const ShieldSettings& settings, const ShieldInput& input, co
   return std::max(by_gain_mps, std::min(closing_mps, 0.0) - braked_mps);
 }
 
-/// The speed at which an obstacle approaches along a normal, m/s; approaching_mps: with its lead. One that only begins
-/// to recede makes no room yet: the arm would follow it faster than it leaves.
-double certain_approach_mps(const Obstacle& obstacle, const Vector3& normal, double approaching_mps) {
-  return approaching_mps + std::max(0.0, -normal.dot(obstacle.lead_mps));
+/// The speed at which an obstacle's point approaches along a normal, m/s, with the lead only if that adds to it.
+/// velocity_mps: of the point, with the lead. An obstacle that is about to recede makes no room yet: the arm would
+/// follow it faster than it leaves.
+double certain_approach_mps(const Obstacle& obstacle, const Vector3& normal, const Vector3& velocity_mps) {
+  return normal.dot(velocity_mps) + std::max(0.0, -normal.dot(obstacle.lead_mps));
 }
 
 /// The room of two links. A posture that is nearer than the clearance may come no nearer, but it need not retreat
@@ -204,7 +205,7 @@ class RowMaker {
                                           (settings_.pass_clearance_m - settings_.hard_clearance_m),
                                       0.0, 1.0);
     const Obstacle& obstacle = input_.obstacles.at(pair.now.obstacle);
-    const double certain_mps = certain_approach_mps(obstacle, pair.now.normal, approaching_mps);
+    const double certain_mps = certain_approach_mps(obstacle, pair.now.normal, pair.velocity_mps);
     const double threat_mps = certain_mps > 0.0 ? (1.0 - passing) * certain_mps : certain_mps;
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
@@ -226,8 +227,7 @@ class RowMaker {
     for (const Proximity& next : proximities_after_turn(link, present, pair.now, turn_rad)) {
       if (next.distance_m > settings_.range_m) continue;
       const JointVector row = axes_.row(body_of(pair), next.on_arm, next.normal);
-      const double approaching_mps =
-          certain_approach_mps(present, next.normal, next.normal.dot(velocity_at(present, next.on_obstacle)));
+      const double approaching_mps = certain_approach_mps(present, next.normal, velocity_at(present, next.on_obstacle));
       add_hard(row, least_mps(row, sustainable_), room_m(row, next.distance_m, pair), std::min(approaching_mps, 0.0));
     }
   }
