@@ -33,7 +33,7 @@ struct Options {
               search, scene, problems;
   uint64_t count = 500, seed = 1;
   int obstacles = 3, decoys = 0;
-  double fastest_mps = 0.5;
+  double fastest_mps = 0.5, ahead_s = 0.0;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool quiet = false, smoothness = false, no_cpu = false, resume = false, no_velocities = false, mover = false;
   std::vector<std::string> merge;
@@ -63,6 +63,11 @@ void declare(CommandLine& app, Options& options) {
   app.add_option("--base", options.base, "first link of the arm").type_name("LINK");
   app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
   app.add_flag("--no-velocities", options.no_velocities, "report obstacles to the controller without their velocities");
+  app.add_option("--ahead", options.ahead_s,
+                 "report obstacles to the controller as they will be so much later, s: what it could do if it knew")
+      .show_default()
+      .range(0.0, 1.0)
+      .not_nan();
   app.add_option("--decoys", options.decoys,
                  "dodges: also report so many spheres at rest near the arm, all obstacles in an order that changes in "
                  "every message")
@@ -170,8 +175,9 @@ int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
-  const TestedController tested{options.law, options.law == "plain" ? nullptr : &config.model, *arm,
-                                !options.no_velocities, options.decoys};
+  const TestedController tested{
+      options.law,   options.law == "plain" ? nullptr : &config.model, *arm, !options.no_velocities, options.ahead_s,
+      options.decoys};
   const std::vector<Row> rows = run_and_record(tasks, tested, options);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;
@@ -277,6 +283,8 @@ int act(const Options& options) {
   if (options.mover && action != play_problems) throw std::runtime_error("--mover: --problems is missing");
   if (options.no_velocities && action != run_trials)
     throw std::runtime_error("--no-velocities: only for the trials of --family");
+  if (options.ahead_s > 0.0 && action != run_trials)
+    throw std::runtime_error("--ahead: only for the trials of --family");
   if (options.decoys > 0 && action != run_trials) throw std::runtime_error("--decoys: only for dodges");
   return action(options);
 }

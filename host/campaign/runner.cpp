@@ -16,6 +16,7 @@ namespace {
 Row trial(const Task& task, const TestedController& tested, const Model* model) {
   Scene scene = make_scene(*task.family, task.seed, tested.arm);
   scene.reports_velocities = tested.velocities;
+  scene.ahead_s = tested.ahead_s;
   if (tested.decoys > 0) add_decoys(scene, tested.decoys);
   const std::unique_ptr<TrialController> controller =
       make_controller(model, tested.arm, tested.arm.limits(*task.family));

@@ -41,6 +41,7 @@ struct Scene {
   std::vector<CapsulePath> capsules;     ///< of persons
   std::vector<sim::Obstacle> furniture;  ///< boxes, cylinders and spheres at rest; among boxes the ground
   bool reports_velocities = true;        ///< of obstacles; false: the controller receives zeros
+  double ahead_s = 0.0;                  ///< the controller receives obstacles as they will be so much later
   bool shuffles_obstacles = false;       ///< each set that the controller receives has another order
   bool goal_has_orientation = false;     ///< furniture: the goal is also the tool's orientation at goal_rad
   /// People: the target is first the tool's position at the goal, then changes moves - 1 times between those at start

@@ -23,6 +23,7 @@ Obstacle moving_sphere(const PointMotion& centre) {
 Sensing::Sensing(const Scene& scene) : scene_(scene), random_("sensing", scene.seed), camera_(scene) {}
 
 const ObstacleMeasurement& Sensing::newest_at(int64_t now_us, double t_s) {
+  t_s += scene_.ahead_s;
   if (!scene_.family->real && !scene_.family->camera) {
     receive(exact(now_us, t_s));
     return newest_;

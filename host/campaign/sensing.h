@@ -25,8 +25,8 @@ class Sensing {
  public:
   explicit Sensing(const Scene& scene);
 
-  /// The newest set at `now_us` of the controller's clock, when the scene's time is `t_s`. To be called with times that
-  /// never decrease.
+  /// The newest set at `now_us` of the controller's clock, when the scene's time is `t_s`; its contents are those of
+  /// Scene::ahead_s later. To be called with times that never decrease.
   const ObstacleMeasurement& newest_at(int64_t now_us, double t_s);
 
  private:

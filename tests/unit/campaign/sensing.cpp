@@ -72,6 +72,26 @@ void obstacles_are_measured_at_rest_while_the_scene_is_frozen(void**) {
                scene.spheres[0].at(0.0).position_m, 0.03);
 }
 
+void obstacles_are_reported_as_they_will_be(void**) {
+  for (const char* name : {"erratic", "gesture", "gesture@camera"}) {
+    const Scene scene = make_scene(family_named(name), 3);
+    Scene known = scene;
+    known.ahead_s = 0.2;
+    Sensing sensing(scene), knowing(known);
+    for (int k = 0; k < 300; ++k) {
+      const int64_t now_us = 1'000'000 + k * kPeriod_us;
+      const ObstacleMeasurement& later = sensing.newest_at(now_us, k * kPeriod_s + 0.2);
+      const ObstacleMeasurement& now = knowing.newest_at(now_us, k * kPeriod_s);
+      check(now.received_us == later.received_us && now.count == later.count, "%s, cycle %d", name, k);
+      check(!now.obstacles.empty() && now.obstacles.size() == later.obstacles.size(), "%s, cycle %d", name, k);
+      for (size_t i = 0; i < now.obstacles.size(); ++i) {
+        check_near(now.obstacles[i].capsule.end, later.obstacles[i].capsule.end, 1e-9);
+        check_near(now.obstacles[i].velocity_mps, later.obstacles[i].velocity_mps, 1e-9);
+      }
+    }
+  }
+}
+
 void decoys_are_harmless_and_come_in_a_new_order_in_every_set(void**) {
   Scene scene = make_scene(family_named("dodge@1"), 3);
   add_decoys(scene, 40);
@@ -95,6 +115,7 @@ int main() {
       cmocka_unit_test(exact_sensing_reports_the_truth_in_every_cycle),
       cmocka_unit_test(real_sensing_is_late_noisy_and_incomplete),
       cmocka_unit_test(obstacles_are_measured_at_rest_while_the_scene_is_frozen),
+      cmocka_unit_test(obstacles_are_reported_as_they_will_be),
       cmocka_unit_test(decoys_are_harmless_and_come_in_a_new_order_in_every_set),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
