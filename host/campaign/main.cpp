@@ -64,7 +64,7 @@ void declare(CommandLine& app, Options& options) {
   app.add_option("--tip", options.tip, "last link of the arm").type_name("LINK");
   app.add_flag("--no-velocities", options.no_velocities, "report obstacles to the controller without their velocities");
   app.add_option("--ahead", options.ahead_s,
-                 "report obstacles to the controller as they will be so much later, s: what it could do if it knew")
+                 "report obstacles to the controller as they will be so much later, s, to see what late sensing costs")
       .show_default()
       .range(0.0, 1.0)
       .not_nan();
@@ -175,9 +175,8 @@ int run_trials(const Options& options) {
   const std::vector<Task> tasks = tasks_of(options);
   const Config config = config_of(options);
   const std::unique_ptr<JudgeArm> arm = judge_arm_of(config);
-  const TestedController tested{
-      options.law,   options.law == "plain" ? nullptr : &config.model, *arm, !options.no_velocities, options.ahead_s,
-      options.decoys};
+  const Model* model = options.law == "plain" ? nullptr : &config.model;
+  const TestedController tested{options.law, model, *arm, !options.no_velocities, options.decoys, options.ahead_s};
   const std::vector<Row> rows = run_and_record(tasks, tested, options);
   publish(rows, options);
   if (rows.size() == tasks.size()) return kDone;

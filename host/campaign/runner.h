@@ -24,8 +24,8 @@ struct TestedController {
   const Model* model;  ///< null: plain tracking
   const JudgeArm& arm = lwa3_arm();
   bool velocities = true;  ///< of the obstacles are reported to it
-  double ahead_s = 0.0;    ///< they are reported as they will be so much later
   int decoys = 0;          ///< more obstacles in each dodge
+  double ahead_s = 0.0;    ///< all obstacles are reported as they will be so much later
 };
 
 /// Runs all tasks on `jobs` threads. The rows are in the order of the tasks and, except for CPU times, do not depend on
