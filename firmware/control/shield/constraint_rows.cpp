@@ -55,12 +55,16 @@ using Places = std::array<int, kTiers>;
 constexpr Places kReservedBesidePersons{24, 16, 16}, kNoneReserved{};
 static_assert(kReservedBesidePersons[0] + kReservedBesidePersons[1] + kReservedBesidePersons[2] == kMaxRows);
 
-/// The least value of row . q' within a range of velocities, m/s.
+/// The least and the largest value of row . q' within a range of velocities, m/s.
 double least_mps(const JointVector& row, const VelocityRange& range) {
   double sum_mps = 0.0;
   for (Eigen::Index i = 0; i < row.size(); ++i)
     sum_mps += std::min(row.coeff(i) * range.lower_radps.coeff(i), row.coeff(i) * range.upper_radps.coeff(i));
   return sum_mps;
+}
+
+double most_mps(const JointVector& row, const VelocityRange& range) {
+  return -least_mps(-row, range);
 }
 
 /// Whether one range lies in another.
@@ -210,8 +214,7 @@ class RowMaker {
     const double room = room_m(row, distance_m, pair);
     add_hard(row, least, room, threat_mps);
     const double to_person_m = separates ? room - kBesidePerson_m : room;
-    if (is_person(input_, pair) && to_person_m < kNearPerson_m)
-      add_hard(row, least, to_person_m, 0.0, kPersonsWeight, 0.0);
+    if (is_person(input_, pair) && to_person_m < kNearPerson_m) add_no_approach(row, least, to_person_m);
     if (input_.comfort_weight == 0.0 || separates) return;
     const double comfort_mps = barrier(settings_.comfort_gain_per_s, distance_m, settings_.comfort_clearance_m);
     add_plan(row, least, approaching_mps + comfort_mps, Tier::kComfort);
@@ -254,12 +257,12 @@ class RowMaker {
  private:
   /// In place of comfort for a person (constraint_rows.h). least: the least value of the row, m/s.
   void add_separation(const JointVector& row, double least, double approaching_mps, double distance_m) {
-    const double most_mps = -least_mps(-row, sustainable_);
-    if (most_mps < kLeastSpeed_mps) return;
+    const double largest_mps = most_mps(row, sustainable_);
+    if (largest_mps < kLeastSpeed_mps) return;
     const double demand_mps = std::min(approaching_mps, kLargestApproach_mps) +
                               barrier(settings_.person_gain_per_s, distance_m, settings_.person_clearance_m);
     const double touched_mps = settings_.person_gain_per_s * settings_.person_clearance_m;
-    const double bound_mps = std::min(demand_mps * std::min(1.0, most_mps / touched_mps), most_mps);
+    const double bound_mps = std::min(demand_mps * std::min(1.0, largest_mps / touched_mps), largest_mps);
     const double scale = std::sqrt(input_.person_weight / input_.comfort_weight);
     if (!(bound_mps > least)) return;
     const JointVector scaled = scale * row;
@@ -335,17 +338,25 @@ class RowMaker {
   }
   int body_of(const NearPair& pair) const { return shape(pair.now.shape).body; }
 
-  /// `least`: the least value of the row within sustainable_, m/s. Rows that every velocity meets are skipped.
-  /// weight: of the row among those that share the slack; largest_mps: of the bound. Returns the bound.
-  double add_hard(const JointVector& row, double least, double room_m, double closing_mps, double weight = 1.0,
-                  double largest_mps = kLargestDemand_mps) {
-    const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), largest_mps);
-    const bool counts = bound_mps > least;
-    if (counts) plan_.add(weight * row, weight * bound_mps, Tier::kHard, bound_mps - least);
-    if (within_ && !counts) return bound_mps;
-    const double violation_mps = bound_mps - least_mps(row, range_);
-    if (violation_mps > 0.0) step_.add(weight * row, weight * bound_mps, Tier::kHard, violation_mps);
+  /// `least`: the least value of the row within sustainable_, m/s. weight: of the row among those that share the slack.
+  /// Returns the bound.
+  double add_hard(const JointVector& row, double least, double room_m, double closing_mps, double weight = 1.0) {
+    const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, closing_mps), kLargestDemand_mps);
+    add_to_both(row, least, bound_mps, bound_mps, weight);
     return bound_mps;
+  }
+  /// Hard row of a near person, which only keeps the arm from approaching by itself.
+  void add_no_approach(const JointVector& row, double least, double room_m) {
+    const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, 0.0), 0.0);
+    add_to_both(row, least, bound_mps, std::min(bound_mps, most_mps(row, range_)), kPersonsWeight);
+  }
+  /// Rows that every velocity meets are skipped.
+  void add_to_both(const JointVector& row, double least, double plan_mps, double step_mps, double weight) {
+    const bool counts = plan_mps > least;
+    if (counts) plan_.add(weight * row, weight * plan_mps, Tier::kHard, plan_mps - least);
+    if (within_ && !counts) return;
+    const double violation_mps = step_mps - least_mps(row, range_);
+    if (violation_mps > 0.0) step_.add(weight * row, weight * step_mps, Tier::kHard, violation_mps);
   }
   /// Hard row of two links. Returns the bound.
   double add_links(const JointVector& row, double distance_m, double clearance_m, double closing_mps) {
