@@ -350,7 +350,7 @@ class RowMaker {
     const double bound_mps = std::min(hard_barrier(settings_, input_, row, room_m, 0.0), 0.0);
     add_to_both(row, least, bound_mps, std::min(bound_mps, most_mps(row, range_)), kPersonsWeight);
   }
-  /// Rows that every velocity meets are skipped.
+  /// The bounds of the row in the two programmes, m/s. Rows that every velocity meets are skipped.
   void add_to_both(const JointVector& row, double least, double plan_mps, double step_mps, double weight) {
     const bool counts = plan_mps > least;
     if (counts) plan_.add(weight * row, weight * plan_mps, Tier::kHard, plan_mps - least);

@@ -32,8 +32,8 @@ namespace sidestep {
 ///   A person with r < 0.05 m has a second hard row, b = min(b1, b2, 0) with v = 0, and row and b are multiplied by 64:
 ///   where another limb cannot be met, the arm does not evade it into this one, and it does not follow one that
 ///   recedes. While the arm keeps separation, r is 0.1 m less in this row: a hand that rests there may stroke at any
-///   time. In the coming period the row asks for no more than max a q' over the range: what the arm cannot brake at
-///   once would become slack, of which the links' rows take 64/512.
+///   time. In RowSets::step b is at most max a q' over the range: what an arm that brakes cannot do at once would
+///   otherwise be slack, and the rows of links would yield by 64/512 of its speed.
 ///   A link and a box or capsule that turn against each other have up to two more hard rows, for the points at which
 ///   they will be nearest after the time that the arm takes to stop (model/turning_proximity.h); an approaching
 ///   obstacle's speed does not count in these. So have two links whose distance is less than 30 mm above c.

@@ -546,7 +546,6 @@ std::vector<ConstraintRow> all_rows(Scene& scene, const std::vector<NearPair>& n
   return all;
 }
 
-/// Places that are reserved for each tier.
 /// Whether it is the row of a near person that only keeps the arm from approaching.
 bool is_against_approach(const ConstraintRow& row, const std::vector<ConstraintRow>& all) {
   return std::any_of(all.begin(), all.end(), [&](const ConstraintRow& one) {
@@ -554,6 +553,7 @@ bool is_against_approach(const ConstraintRow& row, const std::vector<ConstraintR
   });
 }
 
+/// Places that are reserved for each tier.
 using Places = std::array<size_t, kTiers>;
 constexpr Places kBesidePersons{24, 16, 16}, kNoneReserved{};
 
