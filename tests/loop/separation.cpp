@@ -145,6 +145,7 @@ double way_past_a_person_rad(ForesightStatus status) {
 void a_retreat_leads_past_a_person_of_whom_other_guides_keep_clear(void**) {
   const double retreat_rad = way_past_a_person_rad(ForesightStatus::kWaiting);
   const double other_rad = way_past_a_person_rad(ForesightStatus::kGuided);
+  check(retreat_rad > 1.15, "%g rad", retreat_rad);
   check(retreat_rad > other_rad + 0.4, "a retreat turns by %g rad, another guide by %g rad", retreat_rad, other_rad);
 }
 
