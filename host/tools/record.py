@@ -12,7 +12,7 @@ import wire
 from errors import reason
 
 
-STOPS = (signal.SIGINT, signal.SIGTERM)
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def stop(*_):
@@ -52,8 +52,9 @@ def main():
                         help=f"default: {', '.join(wire.TYPES)}")
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    for number in STOPS:  # a shell starts background jobs with SIGINT ignored
-        signal.signal(number, stop)
+    for number in STOPS:  # a shell starts background jobs with SIGINT ignored; nohup(1) ignores SIGHUP on purpose
+        if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, stop)
     try:
         open(arguments.log, "ab").close()
     except OSError as error:

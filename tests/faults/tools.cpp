@@ -47,6 +47,9 @@ void a_rotation_is_restored_from_its_quaternion(void**) {
 void a_log_replays_with_lcm_logplayer(void**) {
   passes("log_replays");
 }
+void a_recording_closes_its_log_at_every_signal_that_ends_it(void**) {
+  passes("closed_logs");
+}
 void coordinates_are_sent_as_they_were_typed(void**) {
   passes("coordinates");
 }
@@ -113,6 +116,8 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_recording_closes_its_log_at_every_signal_that_ends_it,
+                                sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(senders_say_what_they_send, sidestep::test::kill_processes),

@@ -233,15 +233,21 @@ def logged_run(folder):
     return log, runs.load_scenario(scenario_file)["duration_s"]
 
 
+def recorder_of(file, url):
+    """record.py, which listens."""
+    recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", file, "--lcm-url", url],
+                                stdout=subprocess.PIPE)
+    recorder.stdout.readline()
+    return recorder
+
+
 def log_replays():
     """record.py records the messages that lcm-logplayer plays from a log."""
     url = runs.private_url()
     with tempfile.TemporaryDirectory() as name:
         log, _ = logged_run(Path(name))
         copy = Path(name) / "copy.lcmlog"
-        recorder = subprocess.Popen([sys.executable, ROOT / "host/tools/record.py", copy, "--lcm-url", url],
-                                    stdout=subprocess.PIPE)
-        recorder.stdout.readline()  # it listens
+        recorder = recorder_of(copy, url)
         subprocess.run(["lcm-logplayer", "--lcm-url", url, log], check=True, timeout=60, stdout=subprocess.DEVNULL)
         time.sleep(0.5)
         recorder.send_signal(signal.SIGINT)
@@ -250,6 +256,21 @@ def log_replays():
         played, again = (logs.run_of(file, [lwa3], lwa3, arm.CONFIG).joints() for file in (log, copy))
     assert len(again) > 0.95 * len(played), (len(again), len(played))
     assert np.array_equal(again[-1], played[-1])
+
+
+def closed_logs():
+    """record.py closes its log at each signal that ends it, also when its terminal is closed."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        url = runs.private_url()
+        with tempfile.TemporaryDirectory() as name:
+            log = Path(name) / "run.lcmlog"
+            recorder = recorder_of(log, url)
+            wire.connect(url).publish("TARGET", wire.TYPES["TARGET"]().encode())
+            time.sleep(0.3)
+            recorder.send_signal(number)
+            assert recorder.wait(10) == 0, number
+            assert recorder.stdout.read() == f"1 messages in {log}\n".encode(), number
+            assert [event.channel for event in lcm.EventLog(str(log))] == ["TARGET"], number
 
 
 def sent(script, *words):
@@ -551,7 +572,7 @@ def hostile_bytes():
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
                                               allowed_touch, panel_texts, quaternions, places,
-                                              surroundings, visual_meshes, log_replays, coordinates,
+                                              surroundings, visual_meshes, log_replays, closed_logs, coordinates,
                                               refusals, announcements, unknown_scenario, taken_port, play_commands,
                                               another_python, busy_network, networks, camera, second_signal,
                                               signal_within_poll, late_receiver, watched_texts, hostile_bytes, goals)}
