@@ -10,15 +10,12 @@ import lcm
 
 import wire
 from errors import reason
-
-
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+from stop_signals import on_stop
 
 
 def stop(*_):
     """Ends the recording. Later signals, of which timeout(1) sends two, do not interrupt closing the log."""
-    for number in STOPS:
-        signal.signal(number, signal.SIG_IGN)
+    on_stop(signal.SIG_IGN)
     raise KeyboardInterrupt
 
 
@@ -52,9 +49,7 @@ def main():
                         help=f"default: {', '.join(wire.TYPES)}")
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    for number in STOPS:  # a shell starts background jobs with SIGINT ignored; nohup(1) ignores SIGHUP on purpose
-        if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, stop)
+    on_stop(stop)
     try:
         open(arguments.log, "ab").close()
     except OSError as error:

@@ -19,6 +19,7 @@ import numpy as np
 import yaml
 
 from errors import reason
+from stop_signals import on_stop
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build"
@@ -27,8 +28,6 @@ RECORDS = BUILD / "runs"
 LAWS = {"paper": "the paper's law", "sidestep": "Sidestep"}
 TASK_LETTERS = 150
 HELD, BROKEN = 0, 1  # exit codes of a completed simulation: its expectations were met, or not
-
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 stopping = threading.Event()
 
@@ -251,7 +250,7 @@ def signals_as_flag():
     if threading.current_thread() is not threading.main_thread():  # only there signals raise exceptions
         yield
         return
-    handlers = {number: signal.signal(number, lambda *_: stopping.set()) for number in STOPS}
+    handlers = on_stop(lambda *_: stopping.set())
     try:
         yield
     finally:
@@ -343,15 +342,13 @@ def seconds(text):
 
 def interrupt(*_):
     """Ends the script once: a second signal, as of make or of an impatient hand, does not interrupt the clean-up."""
-    for number in STOPS:
-        signal.signal(number, lambda *_: None)
+    on_stop(lambda *_: None)
     raise KeyboardInterrupt
 
 
 def main_of(script):
     """Run a script's main function and exit with its return value. Ctrl-C, SIGTERM and SIGHUP stop its processes."""
-    for number in STOPS:
-        signal.signal(number, interrupt)
+    on_stop(interrupt)
     try:
         sys.exit(script())
     except RunFailed as failure:

@@ -6,7 +6,6 @@ by clearance; the obstacles with their velocities; the surroundings of the confi
 path and, while foresight guides the arm, its coming path; and the state of the controller in words.
 """
 import argparse
-import signal
 import sys
 import time
 from pathlib import Path
@@ -17,6 +16,7 @@ import arm
 import runs
 import wire
 from arm_view import ArmView
+from stop_signals import on_stop
 
 PERIOD_S = 1 / 30
 CATCH_UP_S = 0.1      # a drawing that is late by less shortens the wait for the next, so that the rate holds
@@ -89,8 +89,7 @@ def main():
     arm.add_robot(parser)
     wire.add_lcm_url(parser)
     arguments = parser.parse_args()
-    for number in runs.STOPS:
-        signal.signal(number, runs.interrupt)
+    on_stop(runs.interrupt)
     try:
         View(arms_of(arguments), arguments.lcm_url, arguments.port, arguments.steer).run()
     except KeyboardInterrupt:

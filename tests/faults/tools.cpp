@@ -50,6 +50,9 @@ void a_log_replays_with_lcm_logplayer(void**) {
 void a_recording_closes_its_log_at_every_signal_that_ends_it(void**) {
   passes("closed_logs");
 }
+void a_script_goes_on_under_nohup_when_its_terminal_is_closed(void**) {
+  passes("survivors_of_nohup");
+}
 void coordinates_are_sent_as_they_were_typed(void**) {
   passes("coordinates");
 }
@@ -117,6 +120,8 @@ int main() {
       cmocka_unit_test_teardown(a_rotation_is_restored_from_its_quaternion, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_log_replays_with_lcm_logplayer, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_recording_closes_its_log_at_every_signal_that_ends_it,
+                                sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_script_goes_on_under_nohup_when_its_terminal_is_closed,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(coordinates_are_sent_as_they_were_typed, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(impossible_requests_are_refused_in_one_line, sidestep::test::kill_processes),

@@ -276,6 +276,21 @@ def closed_logs():
             assert set(channels) == {"TARGET"}, number
 
 
+def survivors_of_nohup():
+    """Under nohup(1) a script goes on when its terminal is closed, otherwise it ends; SIGTERM ends it in both cases."""
+    script = ("import os, runs, sys\n"
+              "def main():\n"
+              "    print(os.getpid(), flush=True)\n"
+              "    return len(sys.stdin.read())\n"
+              "runs.main_of(main)\n")
+    for words, number, code in ((["nohup"], signal.SIGHUP, 4), ([], signal.SIGHUP, 130), (["nohup"], signal.SIGTERM, 130)):
+        process = subprocess.Popen([*words, sys.executable, "-c", script], cwd=ROOT / "host/tools", text=True,
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        os.kill(int(process.stdout.readline()), number)
+        process.communicate("four", timeout=10)
+        assert process.returncode == code, (words, number, process.returncode)
+
+
 def sent(script, *words):
     """The first value that a script with these arguments sends."""
     values = []
@@ -575,10 +590,11 @@ def hostile_bytes():
 
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
                                               allowed_touch, panel_texts, quaternions, places,
-                                              surroundings, visual_meshes, log_replays, closed_logs, coordinates,
-                                              refusals, announcements, unknown_scenario, taken_port, play_commands,
-                                              another_python, busy_network, networks, camera, second_signal,
-                                              signal_within_poll, late_receiver, watched_texts, hostile_bytes, goals)}
+                                              surroundings, visual_meshes, log_replays, closed_logs,
+                                              survivors_of_nohup, coordinates, refusals, announcements,
+                                              unknown_scenario, taken_port, play_commands, another_python,
+                                              busy_network, networks, camera, second_signal, signal_within_poll,
+                                              late_receiver, watched_texts, hostile_bytes, goals)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
