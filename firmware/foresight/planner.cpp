@@ -9,8 +9,8 @@
 #include "firmware/foresight/inverse_kinematics.h"
 #include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
-#include "firmware/foresight/segment_to_rest.h"
 #include "firmware/foresight/self_motion.h"
+#include "firmware/foresight/trapezoidal_profile.h"
 #include "firmware/model/prediction.h"
 
 namespace sidestep {
@@ -122,13 +122,14 @@ Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   return guide;
 }
 
-/// Appends a knot at rest as early as the limits allow.
+/// Appends a knot at rest as early as the limits allow, the last one being at rest, too. Of the cubic between them 1.5
+/// distance / duration is the largest velocity, and 6 distance / duration^2 the largest acceleration.
 void Planner::append(Guide& guide, const JointVector& q_rad) const {
-  const int last = guide.knots - 1;
-  const JointVector displacement_rad = q_rad - guide.position_rad[last];
-  const double duration_s =
-      duration_to_rest_s(model_.arm.limits, kLimitShare, displacement_rad, guide.velocity_radps[last]);
-  guide.add(guide.end_s() + duration_s, q_rad);
+  const JointLimits& limits = model_.arm.limits;
+  const JointVector distance_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();
+  const double by_velocity_s = 1.5 * distance_rad.cwiseQuotient(limits.velocity_radps).maxCoeff();
+  const double by_acceleration_s = std::sqrt(6.0 * distance_rad.cwiseQuotient(limits.acceleration_radps2).maxCoeff());
+  guide.add(guide.end_s() + std::max(by_velocity_s, by_acceleration_s) / kLimitShare, q_rad);
 }
 
 /// Whether the guide, and its last configuration after its end, is clear up to the horizon (see the header).
@@ -238,15 +239,17 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
+  const JointLimits& limits = model_.arm.limits;
   const ProximityOfGuides proximity(model_, from);
   Guide start = start_of(from, ForesightStatus::kWaiting);
   double least_s = proximity.cost_s(start, std::numeric_limits<double>::infinity());  // of the arm that stays
-  start.velocity_radps[0] = from.arm.velocity_radps;
+  start.velocity_radps[0] = stoppable_radps(limits, kLimitShare, from.arm.position_rad, from.arm.velocity_radps);
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
     Guide guide = start;
-    append(guide, random_configuration(from.arm.position_rad, kRanges_rad[attempt % kRanges_rad.size()]));
-    if (!ends_in_time(from, guide) || !turns_within_limits(model_.arm.limits, guide)) continue;
+    const double range_rad = kRanges_rad[attempt % kRanges_rad.size()];
+    append_fastest(limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
+    if (!ends_in_time(from, guide)) continue;
     const double cost_s = proximity.cost_s(guide, least_s);
     if (cost_s >= least_s || !is_clear(from, guide)) continue;
     least_s = cost_s;

@@ -4,6 +4,7 @@
 
 #include "firmware/foresight/person_proximity.h"
 #include "firmware/foresight/rollout.h"
+#include "firmware/foresight/trapezoidal_profile.h"
 #include "firmware/model/prediction.h"
 #include "firmware/model/proximity.h"
 #include "tests/support/check.h"
@@ -164,7 +165,7 @@ void a_retreat_from_persons_keeps_farther_away_from_them_than_the_arm_that_stays
   check(retreating_s < 0.7 * staying_s, "%g of %g s remain", retreating_s, staying_s);
 }
 
-/// Searched with the persons in their final positions alone, 36 instead of 26 % remain of what an arm at rest has.
+/// Searched with the persons in their final positions alone, 28 instead of 20 % remain of what an arm at rest has.
 void a_retreat_from_persons_counts_where_they_walk(void**) {
   Random random(3);
   Planner planner(model());
@@ -189,7 +190,7 @@ void a_retreat_from_persons_counts_where_they_walk(void**) {
     }
   }
   check(found > 90, "only %d plans were found", found);
-  check(retreating_s < 0.3 * staying_s, "%g of %g s remain", retreating_s, staying_s);
+  check(retreating_s < 0.24 * staying_s, "%g of %g s remain", retreating_s, staying_s);
 }
 
 void check_limits(const Guide& guide) {
@@ -234,7 +235,9 @@ void a_retreat_from_persons_starts_with_the_velocity_of_the_arm(void**) {
     const Guide guide = planner.plan_retreat_from_persons(*snapshot);
     if (guide.knots == 0) continue;
     ++found;
-    check_near(point_of(guide, snapshot->now_s).velocity_radps, snapshot->arm.velocity_radps, 1e-12);
+    const JointVector from_radps =
+        stoppable_radps(limits, 0.9, snapshot->arm.position_rad, snapshot->arm.velocity_radps);
+    check_near(point_of(guide, snapshot->now_s).velocity_radps, from_radps, 1e-12);
     check_clear(*snapshot, guide);
     check_limits(guide);
   }
