@@ -122,8 +122,8 @@ Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   return guide;
 }
 
-/// Appends a knot at rest as early as the limits allow, the last one being at rest, too. Of the cubic between them 1.5
-/// distance / duration is the largest velocity, and 6 distance / duration^2 the largest acceleration.
+/// Appends a knot at rest as early as the limits allow. The knot before it must be at rest, too: the largest velocity
+/// of the cubic between them is then 1.5 distance / duration, its largest acceleration 6 distance / duration^2.
 void Planner::append(Guide& guide, const JointVector& q_rad) const {
   const JointLimits& limits = model_.arm.limits;
   const JointVector distance_rad = (q_rad - guide.position_rad[guide.knots - 1]).cwiseAbs();

@@ -18,24 +18,25 @@ double stopping_rad(double qd_radps, double acceleration_radps2) {
 
 }  // namespace
 
-TrapezoidalProfile::TrapezoidalProfile(double displacement_rad, double from_radps, double most_radps,
-                                       double most_radps2)
+TrapezoidalProfile::TrapezoidalProfile(double displacement_rad, double from_radps, double velocity_limit_radps,
+                                       double acceleration_limit_radps2)
     : displacement_rad_(displacement_rad), from_radps_(from_radps) {
-  const double stop_rad = stopping_rad(from_radps, most_radps2);
+  const double stop_rad = stopping_rad(from_radps, acceleration_limit_radps2);
   const double sign = displacement_rad >= stop_rad ? 1.0 : -1.0;  // of the cruise velocity
   // Without a limit of velocity the fastest motion has a peak, and no cruise.
-  const double square = 0.5 * from_radps * from_radps + sign * displacement_rad * most_radps2;
+  const double square = 0.5 * from_radps * from_radps + sign * displacement_rad * acceleration_limit_radps2;
   const double peak_radps = std::sqrt(std::max(0.0, square));
-  cruise_radps_ = sign * std::min(peak_radps, most_radps);
+  cruise_radps_ = sign * std::min(peak_radps, velocity_limit_radps);
   const double change_radps = cruise_radps_ - from_radps;
-  cruise_begins_s_ = std::abs(change_radps) / most_radps2;
+  cruise_begins_s_ = std::abs(change_radps) / acceleration_limit_radps2;
   cruise_ends_s_ = cruise_begins_s_;
-  if (peak_radps > most_radps) {
+  if (peak_radps > velocity_limit_radps) {
     const double accelerating_rad = 0.5 * (from_radps + cruise_radps_) * cruise_begins_s_;
-    const double cruising_rad = displacement_rad - accelerating_rad - stopping_rad(cruise_radps_, most_radps2);
+    const double cruising_rad =
+        displacement_rad - accelerating_rad - stopping_rad(cruise_radps_, acceleration_limit_radps2);
     cruise_ends_s_ += std::max(0.0, cruising_rad / cruise_radps_);
   }
-  end_s_ = cruise_ends_s_ + std::abs(cruise_radps_) / most_radps2;
+  end_s_ = cruise_ends_s_ + std::abs(cruise_radps_) / acceleration_limit_radps2;
 }
 
 double TrapezoidalProfile::position_rad(double at_s) const {
@@ -57,15 +58,11 @@ double TrapezoidalProfile::velocity_radps(double at_s) const {
 
 JointVector stoppable_radps(const JointLimits& limits, double share, const JointVector& q_rad,
                             const JointVector& qd_radps) {
-  JointVector stoppable = qd_radps;
-  for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
-    const auto toward = [&](double gap_rad) {
-      return stopping_velocity(std::max(0.0, gap_rad), share * limits.acceleration_radps2[i], 0.0);
-    };
-    stoppable[i] =
-        std::clamp(qd_radps[i], -toward(q_rad[i] - limits.lower_rad[i]), toward(limits.upper_rad[i] - q_rad[i]));
-  }
-  return stoppable;
+  JointLimits gentler = limits;
+  gentler.acceleration_radps2 *= share;
+  const JointVector within_rad = q_rad.cwiseMax(limits.lower_rad).cwiseMin(limits.upper_rad);
+  const VelocityRange range = sustainable_range(gentler, within_rad, within_rad, 0.0);
+  return qd_radps.cwiseMax(range.lower_radps).cwiseMin(range.upper_radps);
 }
 
 /// Between two knots each joint's acceleration is constant, so that the guide's cubics are the profiles.

@@ -11,7 +11,8 @@ namespace sidestep {
 class TrapezoidalProfile {
  public:
   /// Both limits must be above 0.
-  TrapezoidalProfile(double displacement_rad, double from_radps, double most_radps, double most_radps2);
+  TrapezoidalProfile(double displacement_rad, double from_radps, double velocity_limit_radps,
+                     double acceleration_limit_radps2);
 
   double cruise_begins_s() const { return cruise_begins_s_; }
   double cruise_ends_s() const { return cruise_ends_s_; }
@@ -26,8 +27,8 @@ class TrapezoidalProfile {
   double cruise_begins_s_, cruise_ends_s_, end_s_;
 };
 
-/// The velocity of an arm, each joint's limited to that from which it stops before its position limits while it
-/// decelerates at `share` of its limit.
+/// The velocity of an arm, each joint's limited to its velocity limit and to that from which it stops before its
+/// position limits while it decelerates at `share` of its acceleration limit. A joint beyond a limit may only return.
 JointVector stoppable_radps(const JointLimits& limits, double share, const JointVector& q_rad,
                             const JointVector& qd_radps);
 

@@ -347,7 +347,7 @@ def interrupt(*_):
 
 
 def main_of(script):
-    """Run a script's main function and exit with its return value. Ctrl-C, SIGTERM and SIGHUP stop its processes."""
+    """Run a script's main function and exit with its return value. Signals (stop_signals.py) stop its processes."""
     on_stop(interrupt)
     try:
         sys.exit(script())

@@ -5,7 +5,7 @@ STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def on_stop(handler):
-    """Call the handler, as of signal.signal(), at each signal that ends a script. Returns the handlers before, by signal.
+    """Call the handler, as of signal.signal(), at each signal that ends a script. Returns the former ones, by signal.
 
     SIGHUP stays ignored if it is, as nohup(1) wants it. SIGINT does not: shells ignore it for background jobs.
     """

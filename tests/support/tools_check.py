@@ -277,13 +277,14 @@ def closed_logs():
 
 
 def survivors_of_nohup():
-    """Under nohup(1) a script goes on when its terminal is closed, otherwise it ends; SIGTERM ends it in both cases."""
+    """Under nohup(1) a script goes on when its terminal is closed, but ends at SIGTERM; without nohup it ends."""
     script = ("import os, runs, sys\n"
               "def main():\n"
               "    print(os.getpid(), flush=True)\n"
               "    return len(sys.stdin.read())\n"
               "runs.main_of(main)\n")
-    for words, number, code in ((["nohup"], signal.SIGHUP, 4), ([], signal.SIGHUP, 130), (["nohup"], signal.SIGTERM, 130)):
+    for words, number, code in ((["nohup"], signal.SIGHUP, 4), (["nohup"], signal.SIGTERM, 130),
+                                ([], signal.SIGHUP, 130)):
         process = subprocess.Popen([*words, sys.executable, "-c", script], cwd=ROOT / "host/tools", text=True,
                                    stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         os.kill(int(process.stdout.readline()), number)
