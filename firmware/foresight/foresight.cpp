@@ -12,10 +12,7 @@ constexpr double kWorthAChange_s = 0.5;  // of cost; smaller differences are no 
 constexpr double kGoodCost_s = 4.0;
 constexpr int kSearchesUntilWaiting = 50;
 constexpr int kSearchesAfterBad = 20;
-constexpr int kTrustedInARow = 4;
-
-// Among persons a retreat lasts until the law alone has been the better choice for half a second.
-constexpr int kTrustedAmongPersons = 10;
+constexpr int kTrustedInARow = 10;
 constexpr double kNearPersons_s = 0.5;  // of proximity_s: nearer than that the arm looks for a retreat
 
 // So often a search looks for a self-motion alone, while the tool is in place and no collision is near. Few tries find
@@ -84,17 +81,14 @@ void Foresight::assess(const Snapshot& now) {
   expected_ = rollout_.run(now, guide_);
   if (guide_.knots > 0) {
     const Forecast direct = rollout_.run(now, Guide{});
-    const bool among_persons = direct.proximity_s > 0.0;
-    const bool is_safe = !direct.collides && (!among_persons || direct.cost_s < expected_.cost_s);
+    const bool is_safe = !direct.collides && direct.cost_s <= expected_.cost_s;
     direct_in_a_row_ = is_safe ? direct_in_a_row_ + 1 : 0;
     const bool is_retreat = guide_.is_retreat();
     const bool is_over = !now.tracking && !direct.collides && now.now_s >= guide_.end_s();
     const bool is_better =
         direct.cost_s < expected_.cost_s - kWorthAChange_s || (!expected_.arrives && direct.cost_s <= expected_.cost_s);
-    // A retreat leads out of a danger that forecasts see by turns. One that seems to collide itself is not given up for
-    // a law that collides as well.
-    const int enough = among_persons ? kTrustedAmongPersons : expected_.collides ? 1 : kTrustedInARow;
-    const bool is_trusted = !is_retreat || direct_in_a_row_ >= enough;
+    // A retreat leads out of a danger that forecasts see by turns.
+    const bool is_trusted = !is_retreat || direct_in_a_row_ >= kTrustedInARow;
     if (is_over || (is_better && is_trusted)) adopt(Guide{}, direct);
   }
   if (is_good(now, expected_)) {

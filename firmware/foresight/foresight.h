@@ -28,8 +28,8 @@ class Foresight {
   /// Every fifth call is an assessment, unless the last forecast is good and the snapshot is as expected then
   /// (expectation.h). It runs a rollout with the present guide and one without a guide. The guide is dropped if the
   /// rollout without it costs at least 0.5 s less, or if the arm does not arrive with it and the rollout without it
-  /// costs no more. A retreat is dropped only when the rollout without it does not collide either, and in four
-  /// assessments in a row where the retreat does not collide: forecasts of a narrow escape alternate.
+  /// costs no more. A retreat is dropped only after 10 assessments in a row in which the rollout without it does not
+  /// collide and costs no more: forecasts of a narrow escape alternate.
   ///
   /// The four calls between two assessments do nothing while the last forecast is good and 20 such calls have passed
   /// since one was not. Otherwise they search in turns: one call plans a candidate with plan_to_target(), or, if that
@@ -46,8 +46,7 @@ class Foresight {
   ///
   /// The cost of a forecast includes the nearness of persons where the arm ends, which does not count for whether it is
   /// good. While a good forecast is missing because persons keep the arm from its target, every other search plans with
-  /// plan_retreat_from_persons() first. Where persons are, a retreat is dropped only after 10 assessments in a row in
-  /// which the rollout without it neither collides nor costs as much.
+  /// plan_retreat_from_persons() first.
   ///
   /// The status becomes kWaiting, without knots, when three conditions hold: plan_to_target() has failed more than 50
   /// times since the guide was last changed or assessed as good; there is no present guide; the last forecast does not

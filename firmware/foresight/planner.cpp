@@ -122,6 +122,14 @@ Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   return guide;
 }
 
+/// The same with the present velocity.
+Guide Planner::start_of_retreat(const Snapshot& from) const {
+  Guide guide = start_of(from, ForesightStatus::kWaiting);
+  guide.velocity_radps[0] =
+      stoppable_radps(model_.arm.limits, kLimitShare, from.arm.position_rad, from.arm.velocity_radps);
+  return guide;
+}
+
 /// Appends a knot at rest as early as the limits allow. The knot before it must be at rest, too: the largest velocity
 /// of the cubic between them is then 1.5 distance / duration, its largest acceleration 6 distance / duration^2.
 void Planner::append(Guide& guide, const JointVector& q_rad) const {
@@ -228,10 +236,11 @@ Guide Planner::plan_self_motion(const Snapshot& from, Excursion excursion) {
 }
 
 Guide Planner::plan_retreat(const Snapshot& from) {
+  const Guide start = start_of_retreat(from);
   for (int attempt = 0; attempt < kRetreatTriesPerCall; ++attempt) {
-    Guide guide = start_of(from, ForesightStatus::kWaiting);
+    Guide guide = start;
     const double range_rad = attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad;
-    append(guide, random_configuration(from.arm.position_rad, range_rad));
+    append_fastest(model_.arm.limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
     if (is_clear(from, guide)) return guide;
   }
   return {};
@@ -239,16 +248,15 @@ Guide Planner::plan_retreat(const Snapshot& from) {
 
 Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
-  const JointLimits& limits = model_.arm.limits;
   const ProximityOfGuides proximity(model_, from);
-  Guide start = start_of(from, ForesightStatus::kWaiting);
-  double least_s = proximity.cost_s(start, std::numeric_limits<double>::infinity());  // of the arm that stays
-  start.velocity_radps[0] = stoppable_radps(limits, kLimitShare, from.arm.position_rad, from.arm.velocity_radps);
+  const Guide start = start_of_retreat(from);
+  double least_s = proximity.cost_s(start_of(from, ForesightStatus::kWaiting),  // of the arm that stays
+                                    std::numeric_limits<double>::infinity());
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
     Guide guide = start;
     const double range_rad = kRanges_rad[attempt % kRanges_rad.size()];
-    append_fastest(limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
+    append_fastest(model_.arm.limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
     if (!ends_in_time(from, guide)) continue;
     const double cost_s = proximity.cost_s(guide, least_s);
     if (cost_s >= least_s || !is_clear(from, guide)) continue;

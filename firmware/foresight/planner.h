@@ -13,11 +13,11 @@ enum class Excursion { kNone = 1, kNear = 3, kFar = 4 };
 /// velocities, persons as predicted_obstacle().
 ///
 /// A guide leads from the present configuration to a goal configuration, possibly after a pause, and possibly through
-/// one intermediate configuration, as fast as 90 % of the velocity and acceleration limits allow. In a retreat from
-/// persons each joint moves by a trapezoidal profile of its own from the velocity that it has (trapezoidal_profile.h).
-/// Every other guide starts with zero velocity, although the arm may be moving, and its joints move on cubics
-/// (types/guide.h) that begin and end together. A guide is clear if the clearance of its configurations, sampled every
-/// 60 ms up to foresight.horizon_s, is at least foresight.clearance_m. In the first 0.5 s the limit is
+/// one intermediate configuration, as fast as 90 % of the velocity and acceleration limits allow. In a retreat each
+/// joint moves by a trapezoidal profile of its own from the velocity that it has (trapezoidal_profile.h). Every other
+/// guide starts with zero velocity, although the arm may be moving, and its joints move on cubics (types/guide.h) that
+/// begin and end together. A guide is clear if the clearance of its configurations, sampled every 60 ms up to
+/// foresight.horizon_s, is at least foresight.clearance_m. In the first 0.5 s the limit is
 /// min(foresight.clearance_m, clearance at the start - 5 mm), and 0 for a retreat: it may start while an obstacle
 /// passes, which the shield evades.
 class Planner {
@@ -54,6 +54,7 @@ class Planner {
 
  private:
   Guide start_of(const Snapshot& from, ForesightStatus status) const;
+  Guide start_of_retreat(const Snapshot& from) const;
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;
