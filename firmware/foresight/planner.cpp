@@ -122,11 +122,18 @@ Guide Planner::start_of(const Snapshot& from, ForesightStatus status) const {
   return guide;
 }
 
-/// The same with the present velocity.
+/// A guide with one knot: the present configuration and velocity, now.
 Guide Planner::start_of_retreat(const Snapshot& from) const {
   Guide guide = start_of(from, ForesightStatus::kWaiting);
   guide.velocity_radps[0] =
       stoppable_radps(model_.arm.limits, kLimitShare, from.arm.position_rad, from.arm.velocity_radps);
+  return guide;
+}
+
+/// From such a start to a random configuration within range_rad.
+Guide Planner::random_retreat(const Guide& start, double range_rad) {
+  Guide guide = start;
+  append_fastest(model_.arm.limits, kLimitShare, random_configuration(start.position_rad[0], range_rad), guide);
   return guide;
 }
 
@@ -238,9 +245,7 @@ Guide Planner::plan_self_motion(const Snapshot& from, Excursion excursion) {
 Guide Planner::plan_retreat(const Snapshot& from) {
   const Guide start = start_of_retreat(from);
   for (int attempt = 0; attempt < kRetreatTriesPerCall; ++attempt) {
-    Guide guide = start;
-    const double range_rad = attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad;
-    append_fastest(model_.arm.limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
+    const Guide guide = random_retreat(start, attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad);
     if (is_clear(from, guide)) return guide;
   }
   return {};
@@ -250,13 +255,10 @@ Guide Planner::plan_retreat_from_persons(const Snapshot& from) {
   constexpr std::array<double, 3> kRanges_rad{kRetreat_rad, kFarRetreat_rad, kAnywhere_rad};
   const ProximityOfGuides proximity(model_, from);
   const Guide start = start_of_retreat(from);
-  double least_s = proximity.cost_s(start_of(from, ForesightStatus::kWaiting),  // of the arm that stays
-                                    std::numeric_limits<double>::infinity());
+  double least_s = proximity.cost_s(start, std::numeric_limits<double>::infinity());  // of the arm that stays
   Guide best;
   for (size_t attempt = 0; attempt < kTriesFromPersons; ++attempt) {
-    Guide guide = start;
-    const double range_rad = kRanges_rad[attempt % kRanges_rad.size()];
-    append_fastest(model_.arm.limits, kLimitShare, random_configuration(from.arm.position_rad, range_rad), guide);
+    const Guide guide = random_retreat(start, kRanges_rad[attempt % kRanges_rad.size()]);
     if (!ends_in_time(from, guide)) continue;
     const double cost_s = proximity.cost_s(guide, least_s);
     if (cost_s >= least_s || !is_clear(from, guide)) continue;

@@ -55,6 +55,7 @@ class Planner {
  private:
   Guide start_of(const Snapshot& from, ForesightStatus status) const;
   Guide start_of_retreat(const Snapshot& from) const;
+  Guide random_retreat(const Guide& start, double range_rad);
   JointVector random_configuration(const JointVector& around_rad, double range_rad);
   bool find_goal(const Snapshot& from, const Target& target, JointVector& goal_rad);
   bool is_clear(const Snapshot& from, const Guide& guide) const;

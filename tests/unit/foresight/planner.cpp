@@ -243,7 +243,7 @@ void check_retreats_under_way(Guide (Planner::*plan)(const Snapshot&)) {
   check(found > 50, "only %d plans were found", found);
 }
 
-/// Where the next hand comes, a new retreat replaces the last one: an arm that came to rest each time would get
+/// Where the next obstacle comes, a new retreat replaces the last one: an arm that came to rest each time would get
 /// nowhere.
 void a_retreat_starts_with_the_velocity_of_the_arm(void**) {
   check_retreats_under_way(&Planner::plan_retreat);
