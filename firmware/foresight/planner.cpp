@@ -245,7 +245,7 @@ Guide Planner::plan_self_motion(const Snapshot& from, Excursion excursion) {
 Guide Planner::plan_retreat(const Snapshot& from) {
   const Guide start = start_of_retreat(from);
   for (int attempt = 0; attempt < kRetreatTriesPerCall; ++attempt) {
-    const Guide guide = random_retreat(start, attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad);
+    Guide guide = random_retreat(start, attempt % 2 == 0 ? kRetreat_rad : kFarRetreat_rad);
     if (is_clear(from, guide)) return guide;
   }
   return {};
