@@ -293,7 +293,7 @@ int act(const Options& options) {
 int main(int argc, char** argv) {
   CommandLine app(
       "Sidestep's witnessed benchmark: random scenes, each with a witness, a path that proves it solvable; "
-      "among people and boxes without.");
+      "among people, boxes and in dodges without.");
   Options options;
   declare(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;

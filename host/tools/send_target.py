@@ -2,8 +2,8 @@
 """Publish a target, 50 times a second, until Ctrl-C: on TARGET a point that rests, moves, or follows the arrow keys; on
 JOINT_TARGET a posture.
 
-The controller tracks the newest target. While another process, such as the simulator, sends targets too, the arm
-follows both alternately.
+The controller tracks the newest target. While another process sends targets too, the one whose clock is ahead counts;
+beside the simulator that is this script.
 """
 import argparse
 import curses

@@ -9,7 +9,7 @@ import wire
 
 PERIOD_S = 0.1
 STALE_S = 0.5          # a controller that is silent for longer is not running
-OLD_OBSTACLES_S = 0.1  # as timeouts.obstacles_s: older obstacles grow, and their clearance measures nothing
+OLD_OBSTACLES_S = 0.1  # as timeouts.obstacles_s: the clearance to older obstacles is not known
 CHANNELS = ["CONTROLLER_STATUS", "ARM_STATE", "TARGET", "JOINT_TARGET", "OBSTACLES"]
 
 

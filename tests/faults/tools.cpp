@@ -98,6 +98,9 @@ void the_camera_of_the_view_moves_aside_where_a_wall_would_hide_the_arm(void**) 
 void hostile_bytes_are_not_decoded(void**) {
   passes("hostile_bytes");
 }
+void a_manual_page_lists_the_options_of_its_program(void**) {
+  passes("manual_pages");
+}
 
 }  // namespace
 
@@ -142,6 +145,7 @@ int main() {
       cmocka_unit_test_teardown(the_camera_of_the_view_moves_aside_where_a_wall_would_hide_the_arm,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_not_decoded, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_manual_page_lists_the_options_of_its_program, sidestep::test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

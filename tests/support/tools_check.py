@@ -589,13 +589,27 @@ def hostile_bytes():
         assert wire.decoded(channel, whole) is not None
 
 
+def manual_pages():
+    """Every manual page lists the options that its program's --help lists."""
+    for page in sorted((ROOT / "host/install/man").glob("*.1")):
+        name = page.stem.removeprefix("sidestep-")
+        script = ROOT / f"host/tools/{name.replace('-', '_')}.py"
+        command = [sys.executable, script] if script.exists() else [ROOT / f"build/{name}"]
+        text = subprocess.run([*command, "--help"], check=True, capture_output=True, text=True).stdout
+        offered = set(re.findall(r"^ *(?:-h,? *)?(--[a-z][a-z-]*)", text, re.MULTILINE))
+        entries = "".join(re.findall(r"^\.It Fl .*$", page.read_text(), re.MULTILINE))
+        listed = {f"-{option}" for option in re.findall(r"Fl (?:h , )?(-[a-z][a-z-]*)", entries)}
+        assert offered and offered == listed, (name, offered ^ listed)
+
+
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
                                               allowed_touch, panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, closed_logs,
                                               survivors_of_nohup, coordinates, refusals, announcements,
                                               unknown_scenario, taken_port, play_commands, another_python,
                                               busy_network, networks, camera, second_signal, signal_within_poll,
-                                              late_receiver, watched_texts, hostile_bytes, goals)}
+                                              late_receiver, watched_texts, hostile_bytes, goals,
+                                              manual_pages)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

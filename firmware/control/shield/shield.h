@@ -84,7 +84,8 @@ struct ShieldResult {
 ///
 ///   u        nominal joint velocity, n x 1, rad/s (prismatic joints: m/s)
 ///   S        diag(Arm::joint_scale): 0.25 m/s of a prismatic joint weigh as much as 1 rad/s
-///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m
+///   J        tool Jacobian, 3 x n or 6 x n; 1 rad of its angular rows counts as 1 m, while
+///            the target pose moves as 0.1 m
 ///   w        ShieldInput::tool_weight, 1/m2: this term makes the arm avoid obstacles in
 ///            the null space of the tool's task where that is possible
 ///   a_i      1 x n: rate at which the distance of pair i grows with q';  b_i: least such rate, m/s

@@ -8,11 +8,13 @@
 #include "host/people/body.h"
 
 #include "tests/support/check.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep::sim;
 using Eigen::Vector3d;
 using sidestep::test::message_of;
 using sidestep::test::one_line_with;
+using sidestep::test::text_of;
 
 namespace {
 
@@ -80,6 +82,20 @@ void every_value_of_a_scenario_is_read(void**) {
   check_near(*s.expect.clearance_min_m, 0.02, 0);
   assert_false(s.expect.axis_distance_min_m.has_value());
   check_near(*s.published.axis_distance_m, 0.2, 0);
+}
+
+/// The document's keys exist, and every section that a scenario can have is in it.
+void the_documented_scenario_is_read(void**) {
+  const std::string document = text_of("docs/scenarios.md"), opening = "```yaml\n";
+  const size_t begin = document.find(opening) + opening.size();
+  const Scenario s = load(document.substr(begin, document.find("```", begin) - begin));
+  assert_int_equal(s.periods, 800);
+  assert_true(s.plant.kind == PlantSpec::Kind::kServo && s.sensing.lost_share > 0.0 && s.grasp.size() == 2);
+  assert_true(s.world.target->tracks_orientation && s.world.target->motion.path);
+  assert_int_equal(s.world.obstacles.size(), 4 + sidestep::kBodyParts);
+  const Expectations& e = s.expect;
+  assert_true(e.final_distance_max_m && e.clearance_min_m && e.axis_distance_min_m && e.joint_speed_max_radps &&
+              e.joint_acceleration_max_radps2 && s.published.final_distance_m && s.published.axis_distance_m);
 }
 
 void a_target_may_be_a_posture(void**) {
@@ -385,6 +401,7 @@ void the_scenarios_of_the_paper_have_its_values(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(every_value_of_a_scenario_is_read),
+      cmocka_unit_test(the_documented_scenario_is_read),
       cmocka_unit_test(a_target_may_be_a_posture),
       cmocka_unit_test(waypoints_follow_the_position_and_velocity_at_the_start),
       cmocka_unit_test(the_parts_of_a_person_are_obstacles_that_move),
