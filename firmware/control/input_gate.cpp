@@ -1,5 +1,7 @@
 #include "firmware/control/input_gate.h"
 
+#include <algorithm>
+
 #include "firmware/control/validation.h"
 
 namespace sidestep {
@@ -37,11 +39,13 @@ Verdict InputGate::accept(Target& target, double now_s) {
   return {order.accept(target.utime, now_s, timeouts_.target_s), nullptr};
 }
 
-/// After the timeout of targets a restarted operator is believed.
+/// After the timeout of targets a restarted operator is believed. A stop always counts: it must not depend on the clock
+/// of another operator, who may go on sending.
 Verdict InputGate::accept(Control& control, double now_s) {
   if (!plausible(control)) return rejected("control with impossible values");
   if (!is_ordered()) return kAccepted;
-  return {control_order_.accept(control.utime, now_s, timeouts_.target_s), nullptr};
+  const bool in_order = control_order_.accept(control.utime, now_s, timeouts_.target_s);
+  return {in_order || control.command == ControlCommand::kStop, nullptr};
 }
 
 Verdict InputGate::accept(OtherJoints& joints, double now_s) {
@@ -58,23 +62,43 @@ Verdict InputGate::accept(Attachments& attachments, double now_s) {
   return kAccepted;
 }
 
-void InputGate::complete(ObstacleSet& obstacles, double elapsed_s, double now_s) {
-  if (estimates_motion_) estimator_.complete(obstacles, elapsed_s);
+/// sent_apart_s: since the last set, without jitter. elapsed_s: the same, at least what can have passed.
+void InputGate::complete(ObstacleSet& obstacles, double sent_apart_s, double elapsed_s, double now_s) {
+  if (estimates_motion_) estimator_.complete(obstacles, std::max(0.0, sent_apart_s - late_s_));
+  late_s_ = 0.0;
+  estimated_s_ = now_s;
   memory_.add_remembered(obstacles, elapsed_s, now_s);
+}
+
+/// Of a late set only the obstacles that the newest one lacks are news: those of another sender, whose clock is behind.
+void InputGate::complete_late(ObstacleSet& late, double now_s) {
+  if (!estimates_motion_) return;
+  const double elapsed_s = std::max(0.0, now_s - estimated_s_);
+  late_s_ += elapsed_s;
+  estimated_s_ = now_s;
+  const auto begin = late.obstacles.begin();
+  const auto is_news = [this](const Obstacle& obstacle) { return !memory_.holds(obstacle.id); };
+  const int count = late.count;
+  late.count = static_cast<int>(std::partition(begin, begin + count, is_news) - begin);
+  estimator_.complete(late, elapsed_s);
+  late.count = count;
 }
 
 Verdict InputGate::accept(ObstacleSet& obstacles, int64_t utime, double now_s) {
   if (!sanitize(obstacles)) return rejected("obstacles with impossible values");
   if (source_ == InputSource::kRecording) return kAccepted;
   if (source_ == InputSource::kCalls) {
-    complete(obstacles, now_s - memory_.last_set_s(now_s), now_s);
+    const double elapsed_s = now_s - memory_.last_set_s(now_s);
+    complete(obstacles, elapsed_s, elapsed_s, now_s);
     return kAccepted;
   }
   if (obstacles_order_.accept(utime, now_s, timeouts_.obstacles_s)) {
-    complete(obstacles, obstacles_order_.elapsed_s(), now_s);
+    complete(obstacles, obstacles_order_.sent_apart_s(), obstacles_order_.elapsed_s(), now_s);
     return kAccepted;
   }
-  if (obstacles_order_.is_late(utime)) memory_.add_late_set(obstacles, timeouts_.obstacles_s, now_s);
+  if (!obstacles_order_.is_late(utime)) return {};
+  complete_late(obstacles, now_s);
+  memory_.add_late_set(obstacles, timeouts_.obstacles_s, now_s);
   return {};
 }
 

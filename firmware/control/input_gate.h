@@ -28,8 +28,8 @@ struct Verdict {
 /// The gate for values from outside, after decoding: checks plausibility (validation.h), drops late and repeated
 /// messages (message_order.h), gives obstacles without velocities estimated ones (motion_estimator.h) and adds
 /// remembered obstacles to an accepted set (obstacle_memory.h). A late obstacle set is dropped, but its obstacles enter
-/// the memory. (With neighbours no late set gets here: the merger drops them.) Does not throw and does not allocate.
-/// Large: lives on the heap.
+/// the memory. With neighbours the merger, which is before the gate, drops late sets and estimates motion. Does not
+/// throw and does not allocate. Large: lives on the heap.
 class InputGate {
  public:
   /// The arm outlives this.
@@ -47,7 +47,8 @@ class InputGate {
   Verdict accept(OtherJoints& joints, double now_s);
 
  private:
-  void complete(ObstacleSet& obstacles, double elapsed_s, double now_s);
+  void complete(ObstacleSet& obstacles, double sent_apart_s, double elapsed_s, double now_s);
+  void complete_late(ObstacleSet& late, double now_s);
   bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
 
   const Arm& arm_;
@@ -57,6 +58,8 @@ class InputGate {
       attachments_order_;
   bool estimates_motion_;
   MotionEstimator estimator_;
+  double estimated_s_ = 0.0;  ///< when the estimator was last used
+  double late_s_ = 0.0;       ///< by which late sets have advanced its time since the last accepted set
   ObstacleMemory memory_;
   OtherJointMemory other_joints_;
 };

@@ -27,8 +27,13 @@ class MessageOrder {
   /// underestimate what can have changed between them. 0 for the first message.
   double elapsed_s() const { return elapsed_s_; }
 
+  /// Time between the sending of the last two accepted messages, s: that of the sender's clock, without the jitter of
+  /// the network. In the mean it is the time between their receipts, whatever the sender's clock does. 0 for the first.
+  double sent_apart_s() const { return sent_apart_s_; }
+
  private:
   bool has_restarted(int64_t utime, double now_s, double restart_s);
+  void follow_clock(int64_t utime, double by_receipt_s, double slack_s);
 
   bool any_ = false;
   int64_t utime_ = 0;
@@ -36,6 +41,8 @@ class MessageOrder {
   int old_in_a_row_ = 0;   ///< such messages since the last accepted one
   double accepted_s_ = 0.0;
   double elapsed_s_ = 0.0;
+  double sent_apart_s_ = 0.0;
+  double lead_s_ = 0.0;  ///< by how much the sender's clock is ahead of the receipts, less the mean
 };
 
 }  // namespace sidestep

@@ -16,6 +16,7 @@ constexpr int kNoiseDeviations = 20;     // the variance is about the mean of so
 constexpr int kLeastDeviations = 3;      // for fewer it is unknown
 constexpr double kFastest_mps = 8.0;     // a hand reaches 6 m/s
 constexpr double kNoise_m = 0.05;        // of a measured position
+constexpr double kOtherEdge = 0.7;       // cosine; where the axis of a box turns farther, another edge is the longest
 
 constexpr double kLead_s = 0.2;
 constexpr double kLargestLead_mps = 0.5;
@@ -109,21 +110,24 @@ Vector3 MotionEstimator::mean_velocity_mps(const Obstacle& obstacle, Track& trac
   return velocity_mps.norm() < kLeastMeanSpeed_mps ? Vector3(Vector3::Zero()) : velocity_mps;
 }
 
-void MotionEstimator::complete(Obstacle& obstacle, Track& track, double now_s) {
+void MotionEstimator::complete(Obstacle& obstacle, Track& track) const {
   const Capsule& capsule = obstacle.capsule;
-  const Vector3 velocity_mps = track.centre.velocity_mps({now_s, capsule.centre()});
+  const Vector3 velocity_mps = track.centre.velocity_mps({now_s_, capsule.centre()});
   const bool is_reported = !obstacle.velocity_mps.isZero(0.0);
   if (!is_reported) obstacle.velocity_mps = velocity_mps;
   if (track.centre.began()) track.velocities.clear();
-  const Vector3 lead = lead_mps({now_s, obstacle.velocity_mps}, track.velocities);
-  obstacle.mean_velocity_mps = mean_velocity_mps(obstacle, track, now_s);
-  if ((is_reported || track.centre.moves()) && obstacle.id > kNeighbourIds) obstacle.lead_mps = lead;
+  const Vector3 lead = lead_mps({now_s_, obstacle.velocity_mps}, track.velocities);
+  obstacle.mean_velocity_mps = mean_velocity_mps(obstacle, track, now_s_);
+  if (leads_ && (is_reported || track.centre.moves())) obstacle.lead_mps = lead;
   obstacle.velocity_mps += obstacle.lead_mps;
-  if (capsule.is_sphere()) return;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
+  if (half_axis_m.squaredNorm() == 0.0) return;
   if (half_axis_m.dot(track.half_axis_m) < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order
+  const double along_m2 = half_axis_m.dot(track.half_axis_m);
+  const bool is_near = along_m2 > kOtherEdge * half_axis_m.norm() * track.half_axis_m.norm();
+  if (obstacle.shape == Shape::kBox && !is_near) track.axis = Point();
   track.half_axis_m = half_axis_m;
-  const Vector3 tip_mps = track.axis.velocity_mps({now_s, half_axis_m});
+  const Vector3 tip_mps = track.axis.velocity_mps({now_s_, half_axis_m});
   if (obstacle.angular_velocity_radps.isZero(0.0))
     obstacle.angular_velocity_radps = half_axis_m.cross(tip_mps) / half_axis_m.squaredNorm();
 }
@@ -146,7 +150,7 @@ void MotionEstimator::complete(ObstacleSet& set, double elapsed_s) {
     if (track.shape != obstacle.shape) track = Track();
     track.id = obstacle.id;
     track.shape = obstacle.shape;
-    complete(obstacle, track, now_s_);
+    complete(obstacle, track);
     track.reported_s = now_s_;
   }
   keep_unreported_below(int64_t{std::numeric_limits<int32_t>::max()} + 1);

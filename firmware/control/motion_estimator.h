@@ -25,17 +25,21 @@ namespace sidestep {
 /// whatever predicts at constant velocity thus follows an obstacle that turns or starts. The acceleration a is the
 /// slope of the velocities. Of a only what stands out from the noise counts: a (1 - (5 s / |a|)^2), or 0, with the
 /// standard deviation s of the slope. An obstacle at rest whose velocity is not reported has no lead, nor do the links
-/// of other arms: their sets are merged with others as they arrive, so that the lead would depend on the order of
-/// arrival.
+/// of other arms.
 ///
 /// The mean velocity of a person is (p - m) / 0.5 s, where m is the exponential mean of the reported positions p with
 /// this time constant; below 0.15 m/s it is 0. Limbs swing about a body that walks on.
 ///
 /// The angular velocity is that of the axis, perpendicular to it; a sphere has none, and a box or cylinder that spins
-/// about its axis is not noticed. Obstacles are matched by id, also if sets in between lack them; obstacles with the
-/// same id are matched in the order of the message. Large: lives on the heap, like an ObstacleSet.
+/// about its axis is not noticed. Where the axis of a box turns by more than 45 degrees between two reports, another
+/// edge of the box has become the longest, and the estimate begins anew. Obstacles are matched by id, also if sets in
+/// between lack them; obstacles with the same id are matched in the order of the message. Large: lives on the heap,
+/// like an ObstacleSet.
 class MotionEstimator {
  public:
+  /// leads: whether velocities get a lead.
+  explicit MotionEstimator(bool leads = true) : leads_(leads) {}
+
   /// Sets the velocities of a new set. elapsed_s: since the set before. Work is bounded by n log n; nothing is
   /// allocated.
   void complete(ObstacleSet& set, double elapsed_s);
@@ -99,8 +103,9 @@ class MotionEstimator {
 
   static Vector3 lead_mps(const Report& velocity_mps, History& velocities);
   static Vector3 mean_velocity_mps(const Obstacle& obstacle, Track& track, double now_s);
-  static void complete(Obstacle& obstacle, Track& track, double now_s);
+  void complete(Obstacle& obstacle, Track& track) const;
 
+  bool leads_;
   double now_s_ = 0.0;
   ObstacleOrder order_;                         ///< of the new set
   std::array<Track, kMaxObstacles> tracks_[2];  ///< sorted by id. Two buffers: the current list and the next one

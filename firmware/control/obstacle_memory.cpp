@@ -101,6 +101,13 @@ void ObstacleMemory::compare(const ObstacleSet& set, double elapsed_s, double no
   current_ = 1 - current_;
 }
 
+bool ObstacleMemory::holds(int32_t id) const {
+  const auto is_below = [](const Obstacle& obstacle, int32_t wanted) { return obstacle.id < wanted; };
+  const auto end = before_.begin() + before_count_;
+  const auto found = std::lower_bound(before_.begin(), end, id, is_below);
+  return found != end && found->id == id;
+}
+
 void ObstacleMemory::add_late_set(const ObstacleSet& set, double late_s, double now_s) {
   sort_by_id(set, order_);
   const Remembered& were_vanished = vanished_[current_];

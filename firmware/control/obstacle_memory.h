@@ -38,6 +38,9 @@ class ObstacleMemory {
   /// after a shrink. The input gate passes timeouts.obstacles_s as late_s.
   void add_late_set(const ObstacleSet& set, double late_s, double now_s);
 
+  /// Whether the last set has an obstacle with this id.
+  bool holds(int32_t id) const;
+
   /// Time of the last set; `otherwise` before the first one.
   double last_set_s(double otherwise) const { return any_set_ ? before_s_ : otherwise; }
 

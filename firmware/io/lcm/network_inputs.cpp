@@ -13,13 +13,25 @@ struct NetworkInputs::Parts {
   std::unique_ptr<ObstacleMerger> merger;  ///< null without neighbours
 };
 
+namespace {
+
+/// With neighbours the merger estimates motion, before it moves the parts to one time.
+Settings settings_of_gate(Settings settings, const Neighbours& neighbours) {
+  settings.estimates_motion &= neighbours.listen.empty();
+  return settings;
+}
+
+}  // namespace
+
 NetworkInputs::NetworkInputs(const Settings& settings, const Arm& arm, const Dialect& dialect,
                              const Neighbours& neighbours, bool lockstep)
     : parts_(new Parts{
-          {dialect, arm}, {arm, settings, lockstep ? InputSource::kLockstep : InputSource::kNetwork}, nullptr}) {
+          {dialect, arm},
+          {arm, settings_of_gate(settings, neighbours), lockstep ? InputSource::kLockstep : InputSource::kNetwork},
+          nullptr}) {
   if (neighbours.listen.empty()) return;
   parts_->merger = std::make_unique<ObstacleMerger>(neighbours.listen.size(), neighbours.world_from_base.inverse(),
-                                                    settings.timeouts.obstacles_s);
+                                                    settings.timeouts.obstacles_s, settings.estimates_motion);
 }
 
 NetworkInputs::~NetworkInputs() = default;

@@ -11,19 +11,21 @@ constexpr int kIdsPerNeighbour = -kNeighbourIds;
 }  // namespace
 
 struct ObstacleMerger::Part {
-  explicit Part(const Eigen::Isometry3d& from) : base_from_part(from) {}
+  Part(const Eigen::Isometry3d& from, bool leads) : base_from_part(from), estimator(leads) {}
 
   Eigen::Isometry3d base_from_part;
   MessageOrder order;
+  MotionEstimator estimator;
   ObstacleSet sets[2];
   int current = 0;  ///< index of the accepted set; the other one is the draft
   double received_s = -HUGE_VAL;
 };
 
-ObstacleMerger::ObstacleMerger(size_t neighbours, const Eigen::Isometry3d& base_from_world, double timeout_s)
-    : timeout_s_(timeout_s) {
-  parts_.push_back(std::make_unique<Part>(Eigen::Isometry3d::Identity()));
-  for (size_t k = 0; k < neighbours; ++k) parts_.push_back(std::make_unique<Part>(base_from_world));
+ObstacleMerger::ObstacleMerger(size_t neighbours, const Eigen::Isometry3d& base_from_world, double timeout_s,
+                               bool estimates_motion)
+    : timeout_s_(timeout_s), estimates_motion_(estimates_motion) {
+  parts_.push_back(std::make_unique<Part>(Eigen::Isometry3d::Identity(), true));
+  for (size_t k = 0; k < neighbours; ++k) parts_.push_back(std::make_unique<Part>(base_from_world, false));
 }
 
 ObstacleMerger::~ObstacleMerger() = default;
@@ -35,6 +37,7 @@ ObstacleSet& ObstacleMerger::draft(size_t part) {
 bool ObstacleMerger::accept(size_t number, int64_t utime, double now_s) {
   Part& part = *parts_[number];
   if (!part.order.accept(utime, now_s, timeout_s_)) return false;
+  if (estimates_motion_) part.estimator.complete(draft(number), part.order.sent_apart_s());
   part.current = 1 - part.current;
   part.received_s = now_s;
   return true;

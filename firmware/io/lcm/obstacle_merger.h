@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/control/message_order.h"
+#include "firmware/control/motion_estimator.h"
 #include "firmware/model/obstacle.h"
 
 namespace sidestep {
@@ -17,14 +18,15 @@ namespace sidestep {
 /// -(10000 k + i), where i counts within the neighbour's message.
 class ObstacleMerger {
  public:
-  /// timeout_s: largest age of a part, timeouts.obstacles_s.
-  ObstacleMerger(size_t neighbours, const Eigen::Isometry3d& base_from_world, double timeout_s);
+  /// timeout_s: largest age of a part, timeouts.obstacles_s. estimates_motion: of each part (motion_estimator.h), the
+  /// links of other arms without a lead.
+  ObstacleMerger(size_t neighbours, const Eigen::Isometry3d& base_from_world, double timeout_s, bool estimates_motion);
   ~ObstacleMerger();
 
   /// The set to decode the next message of a part into; its previous content is arbitrary.
   ObstacleSet& draft(size_t part);
 
-  /// Takes the draft of a part, received at now_s; drops it when it is late or repeated.
+  /// Takes the draft of a part, received at now_s, and completes its velocities; drops it when it is late or repeated.
   bool accept(size_t part, int64_t utime, double now_s);
 
   struct Merged {
@@ -44,6 +46,7 @@ class ObstacleMerger {
   void add(const Part& part, int number, double at_s, ObstacleSet& merged);
 
   double timeout_s_;
+  bool estimates_motion_;
   int64_t utime_ = 0;
   bool too_many_ = false;
   std::vector<std::unique_ptr<Part>> parts_;

@@ -1,9 +1,11 @@
 #include "firmware/control/message_order.h"
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "tests/support/check.h"
+#include "tests/support/random.h"
 
 using namespace sidestep;
 
@@ -76,6 +78,44 @@ void elapsed_time_follows_the_senders_clock_within_the_network_delay(void**) {
   check_near(order.elapsed_s(), 0.11, 1e-12);
 }
 
+/// A camera of 30 Hz whose messages take 10 to 26 ms.
+void the_time_between_two_sendings_is_free_of_jitter(void**) {
+  test::Random random(1);
+  MessageOrder order;
+  double sum_s = 0.0;
+  const int messages = 300;
+  for (int k = 0; k <= messages; ++k) {
+    const double sent_s = k / 30.0;
+    assert_true(order.accept(std::lround(sent_s * 1e6), sent_s + random.uniform(0.010, 0.026), 0.1));
+    if (k > 0) check_near(order.sent_apart_s(), 1.0 / 30.0, 3e-4);
+    sum_s += order.sent_apart_s();
+  }
+  check_near(sum_s, messages / 30.0, 0.04);
+}
+
+/// Clocks in milliseconds, in nanoseconds, that stand still but for the order, and that are fast by 2 %.
+void the_time_between_two_sendings_follows_the_receipts_in_the_mean(void**) {
+  for (const double ticks_per_s : {1e3, 1e9, 30.0, 1.02e6}) {
+    MessageOrder order;
+    double sum_s = 0.0;
+    for (int k = 0; k <= 600; ++k) {
+      assert_true(order.accept(std::lround(k / 30.0 * ticks_per_s), k / 30.0, 0.1));
+      if (k >= 300) sum_s += order.sent_apart_s();
+    }
+    check_near(sum_s, 301 / 30.0, 0.05);
+  }
+}
+
+void a_restarted_sender_does_not_turn_time_back(void**) {
+  MessageOrder order;
+  assert_true(order.accept(9'000'000, 1.00, 0.1));
+  assert_true(order.accept(9'033'000, 1.03, 0.1));
+  assert_true(order.accept(5, 2.00, 0.1));
+  check_near(order.sent_apart_s(), 0.97, 1e-12);
+  assert_true(order.accept(30'005, 2.04, 0.1));
+  check_near(order.sent_apart_s(), 0.03, 1e-12);
+}
+
 /// In lockstep the arm's utime is also the controller's clock.
 void old_messages_are_dropped_when_the_messages_are_the_clock(void**) {
   MessageOrder order;
@@ -97,6 +137,9 @@ int main() {
       cmocka_unit_test(a_message_that_is_very_late_is_dropped),
       cmocka_unit_test(one_message_from_the_far_future_does_not_lock_its_sender_out),
       cmocka_unit_test(elapsed_time_follows_the_senders_clock_within_the_network_delay),
+      cmocka_unit_test(the_time_between_two_sendings_is_free_of_jitter),
+      cmocka_unit_test(the_time_between_two_sendings_follows_the_receipts_in_the_mean),
+      cmocka_unit_test(a_restarted_sender_does_not_turn_time_back),
       cmocka_unit_test(old_messages_are_dropped_when_the_messages_are_the_clock),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -76,6 +76,21 @@ void a_limb_that_turns_without_an_angular_velocity_gets_its_own_whatever_the_ord
   }
 }
 
+/// Two edges are nearly equal; which of them is the longest changes from report to report.
+void a_box_at_rest_whose_longest_edge_changes_does_not_turn(void**) {
+  Random random(11);
+  const Matrix3 turn = random.turn().toRotationMatrix();
+  for (const double rate_hz : {10.0, 30.0, 100.0}) {
+    Scene scene;
+    for (int k = 0; k < 60; ++k) {
+      const Vector3 edges_m(0.3 + random.uniform(-0.002, 0.002), 0.3 + random.uniform(-0.002, 0.002), 0.1);
+      Obstacle box = box_obstacle({0.6, 0.1, 0.2}, turn, edges_m);
+      box.id = 3;
+      check_near(scene.send({box}, 1.0 / rate_hz).angular_velocity_radps, Vector3::Zero(), 0.0);
+    }
+  }
+}
+
 void noise_does_not_move_an_obstacle_at_rest(void**) {
   Random random(3);
   for (const double deviation_m : {0.001, 0.003, 0.005, 0.01}) {
@@ -305,6 +320,7 @@ int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(an_obstacle_that_moves_without_a_velocity_gets_its_own),
       cmocka_unit_test(a_limb_that_turns_without_an_angular_velocity_gets_its_own_whatever_the_order_of_its_ends),
+      cmocka_unit_test(a_box_at_rest_whose_longest_edge_changes_does_not_turn),
       cmocka_unit_test(noise_does_not_move_an_obstacle_at_rest),
       cmocka_unit_test(the_velocity_of_a_noisy_obstacle_is_right_on_average_and_its_error_is_bounded),
       cmocka_unit_test(a_constant_reported_velocity_is_not_changed),

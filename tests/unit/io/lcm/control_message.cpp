@@ -80,6 +80,17 @@ void an_older_message_is_dropped_unless_the_operator_has_restarted(void**) {
   assert_int_equal(inputs.rejected(), 0);
 }
 
+void a_stop_counts_whatever_its_time(void**) {
+  TestInputs inputs(7, Settings());
+  Control control;
+  assert_true(receive(inputs, message(1'000'000, control_t::RESUME, 1.0), control, 1.0));
+  for (const int64_t utime : {int64_t{999'999}, int64_t{1'000'000}, int64_t{0}, INT64_MIN}) {
+    assert_true(receive(inputs, message(utime, control_t::STOP, 1.0), control, 1.01));
+    assert_true(control.command == ControlCommand::kStop);
+  }
+  assert_false(receive(inputs, message(999'999, control_t::PAUSE, 1.0), control, 1.02));
+}
+
 }  // namespace
 
 int main() {
@@ -88,6 +99,7 @@ int main() {
       cmocka_unit_test(impossible_values_are_rejected),
       cmocka_unit_test(every_truncation_and_flipped_bit_is_rejected_or_plausible),
       cmocka_unit_test(an_older_message_is_dropped_unless_the_operator_has_restarted),
+      cmocka_unit_test(a_stop_counts_whatever_its_time),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

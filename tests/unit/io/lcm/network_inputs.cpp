@@ -190,6 +190,29 @@ void old_messages_are_dropped_but_not_counted_as_rejected(void**) {
   assert_string_equal(inputs.last_reason(), "");
 }
 
+/// Two balls that move, each reported by a sender of its own, without velocities. The clock of the second is behind by
+/// so little that some of its sets are late, or by more.
+void the_obstacles_of_two_senders_get_velocities(void**) {
+  for (const double behind_s : {0.0, 0.005, 0.02, 5.0}) {
+    TestInputs inputs(kJoints, Settings());
+    const auto set = std::make_unique<ObstacleSet>();
+    double found_mps = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const double first_s = 10.0 + k / 30.0, second_s = first_s + 0.01;
+      const auto ball = [](int32_t id, double at_s, double clock_s) {
+        return encoded(obstacles_message(std::lround(clock_s * 1e6),
+                                         {test::sphere(id, {at_s - 10.0, 1.0 * id, 0}, 0.05, Vector3::Zero())}));
+      };
+      assert_true(receive(inputs, ball(1, first_s, first_s), *set, first_s));
+      for (int i = 0; i < set->count; ++i)
+        if (set->obstacles[static_cast<size_t>(i)].id == 2)
+          found_mps = set->obstacles[static_cast<size_t>(i)].velocity_mps.x();
+      receive(inputs, ball(2, second_s, second_s - behind_s), *set, second_s);
+    }
+    check(std::abs(found_mps - 1.0) < 0.1, "%g s behind: %g m/s", behind_s, found_mps);
+  }
+}
+
 /// Each sender reports only its own obstacles as the full set; the clock of one is behind.
 void the_obstacles_of_two_senders_all_count(void**) {
   for (const int64_t behind_us : {0, 15'000, 400'000}) {
@@ -259,6 +282,7 @@ int main() {
       cmocka_unit_test(a_set_of_4096_obstacles_is_accepted_and_a_larger_one_rejected),
       cmocka_unit_test(old_messages_are_dropped_but_not_counted_as_rejected),
       cmocka_unit_test(the_obstacles_of_two_senders_all_count),
+      cmocka_unit_test(the_obstacles_of_two_senders_get_velocities),
       cmocka_unit_test(no_message_allocates_after_the_first_of_its_kind),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

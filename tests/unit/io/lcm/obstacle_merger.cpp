@@ -145,6 +145,25 @@ void a_merged_set_is_as_old_as_its_oldest_part(void**) {
   assert_int_equal(subscriber.inputs.rejected(), 0);
 }
 
+/// A ball at 1 m/s whose velocity nobody tells, at 100 Hz with jitter, beside a neighbour that sends seldom or often.
+void the_motion_of_an_obstacle_is_estimated_whenever_the_neighbour_sends(void**) {
+  test::Random random(4);
+  for (const double neighbour_s : {0.01, 0.05}) {
+    Subscriber subscriber(neighbours_at(pose({0, 0, 0}, 0), {"LINKS"}));
+    double next_s = 0.001;
+    for (int k = 0; k < 200; ++k) {
+      const double sent_s = 0.01 * k, now_s = sent_s + random.uniform(0.001, 0.008);
+      for (; next_s < now_s; next_s += neighbour_s)
+        subscriber.receive(1, ball_at(std::lround(next_s * 1e6), {2, 0, 0}, {0, 0, 0}), next_s);
+      if (!subscriber.receive(0, ball_at(std::lround(sent_s * 1e6), {sent_s, 0, 0}, {0, 0, 0}), now_s)) continue;
+      if (k < 50) continue;
+      const Obstacle& ball = subscriber.set->obstacles[0];
+      check_near(ball.velocity_mps, Vector3(1, 0, 0), 0.05);
+      check_near(extrapolated(ball, subscriber.age_s).capsule.start.x(), sent_s, 1e-3);
+    }
+  }
+}
+
 /// After a restart of the simulator, earlier messages of a neighbour no longer count.
 void after_a_restart_of_the_clock_a_silent_neighbour_is_unknown(void**) {
   Subscriber subscriber(neighbours_at(pose({0, 0, 0}, 0), {"LINKS"}));
@@ -203,6 +222,7 @@ int main() {
       cmocka_unit_test(links_arrive_in_the_base_frame_of_the_receiver),
       cmocka_unit_test(all_shapes_arrive_unchanged),
       cmocka_unit_test(a_merged_set_is_as_old_as_its_oldest_part),
+      cmocka_unit_test(the_motion_of_an_obstacle_is_estimated_whenever_the_neighbour_sends),
       cmocka_unit_test(after_a_restart_of_the_clock_a_silent_neighbour_is_unknown),
       cmocka_unit_test(a_bad_message_of_one_neighbour_does_not_affect_the_others),
       cmocka_unit_test(more_obstacles_than_a_message_holds_are_not_merged),
