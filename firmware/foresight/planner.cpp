@@ -94,22 +94,17 @@ class ProximityOfGuides {
   std::array<Persons, kInstants> at_instants_;
 };
 
-/// A position limit; half a turn where a joint has none. (A prismatic joint has one.)
-double bounded(double limit_rad, double otherwise_rad) {
-  return std::isfinite(limit_rad) ? limit_rad : otherwise_rad;
-}
-
 }  // namespace
 
 /// Uniformly distributed within range_rad (times Arm::joint_scale) of a configuration, per joint, and within the
-/// position limits.
+/// position limits, or half a turn of a joint without limits, which may have been wound up.
 JointVector Planner::random_configuration(const JointVector& around_rad, double range_rad) {
   const JointLimits& limits = model_.arm.limits;
   JointVector q_rad = around_rad;
   for (Eigen::Index i = 0; i < q_rad.size(); ++i) {
     const double range = range_rad * model_.arm.joint_scale[i];
-    q_rad[i] = random_.uniform(std::max(bounded(limits.lower_rad[i], -M_PI), q_rad[i] - range),
-                               std::min(bounded(limits.upper_rad[i], M_PI), q_rad[i] + range));
+    q_rad[i] = random_.uniform(std::max(lower_or_half_turn(limits, around_rad, i), q_rad[i] - range),
+                               std::min(upper_or_half_turn(limits, around_rad, i), q_rad[i] + range));
   }
   return q_rad;
 }

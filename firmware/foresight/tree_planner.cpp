@@ -33,10 +33,6 @@ constexpr double kStayAtGoal_s = 1.0;  // a guide ends so much before the horizo
 constexpr double kPauses_s[] = {0.0, 0.4, 0.8, 1.5};
 constexpr double kSampleEvery_s = 0.06;
 
-double or_half_turn(double limit_rad, double half_turn_rad) {
-  return std::isfinite(limit_rad) ? limit_rad : half_turn_rad;
-}
-
 bool rests(const Target& target) {
   return target.velocity_mps.norm() < kTargetRests_mps && target.angular_velocity_radps.norm() < kTargetRests_radps;
 }
@@ -94,12 +90,13 @@ void TreePlanner::clear_trees() {
   for (const JointVector& goal_rad : goals_rad_) trees_[1].add({goal_rad, -1});
 }
 
-/// Uniformly distributed within the position limits; a joint without limits makes half a turn to either side.
+/// Uniformly distributed within the position limits; a joint without limits makes half a turn to either side of where
+/// it is.
 JointVector TreePlanner::random_configuration() {
   const JointLimits& limits = model_.arm.limits;
   JointVector q_rad(model_.arm.joints);
   for (Eigen::Index i = 0; i < q_rad.size(); ++i)
-    q_rad[i] = random_.uniform(or_half_turn(limits.lower_rad[i], -M_PI), or_half_turn(limits.upper_rad[i], M_PI));
+    q_rad[i] = random_.uniform(lower_or_half_turn(limits, start_rad_, i), upper_or_half_turn(limits, start_rad_, i));
   return q_rad;
 }
 

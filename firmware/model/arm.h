@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bitset>
+#include <cmath>
 #include <kdl/chain.hpp>
 #include <memory>
 #include <string>
@@ -21,6 +22,14 @@ struct JointLimits {
   JointVector velocity_radps;
   JointVector acceleration_radps2;
 };
+
+/// A position limit; half a turn from q where a joint has none. (A prismatic joint has one.)
+inline double lower_or_half_turn(const JointLimits& limits, const JointVector& q_rad, Eigen::Index i) {
+  return std::isfinite(limits.lower_rad[i]) ? limits.lower_rad[i] : q_rad[i] - M_PI;
+}
+inline double upper_or_half_turn(const JointLimits& limits, const JointVector& q_rad, Eigen::Index i) {
+  return std::isfinite(limits.upper_rad[i]) ? limits.upper_rad[i] : q_rad[i] + M_PI;
+}
 
 /// One collision shape of the URDF, or one convex piece of a mesh.
 struct LinkShape : BodyShape {

@@ -117,6 +117,29 @@ void check_clear(const Snapshot& snapshot, const Guide& guide) {
   }
 }
 
+/// The first joint has no limits and has made three turns: the plans are those without the turns.
+void a_joint_that_was_wound_up_is_not_unwound(void**) {
+  constexpr double kTurns_rad = 6.0 * M_PI;
+  Model continuous = model();
+  continuous.arm.limits.lower_rad[0] = -HUGE_VAL;
+  continuous.arm.limits.upper_rad[0] = HUGE_VAL;
+  int found = 0;
+  for (const auto plan : {&Planner::plan_to_target, &Planner::plan_retreat, &Planner::plan_retreat_from_persons}) {
+    Random random(3);
+    for (int trial = 0; trial < 5; ++trial) {
+      const auto snapshot = random_world(random);
+      const Guide guide = (Planner(continuous).*plan)(*snapshot);
+      snapshot->arm.position_rad[0] += kTurns_rad;
+      const Guide wound_up = (Planner(continuous).*plan)(*snapshot);
+      assert_int_equal(wound_up.knots, guide.knots);
+      for (int k = 0; k < guide.knots; ++k)
+        check_near(wound_up.position_rad[k][0], guide.position_rad[k][0] + kTurns_rad, 1e-6);
+      found += guide.knots > 0;
+    }
+  }
+  check(found >= 8, "only %d plans were found", found);
+}
+
 void a_plan_to_the_target_is_clear_of_the_obstacles_as_they_move(void**) {
   for_random_plans(&Planner::plan_to_target, 30, check_clear);
 }
@@ -352,6 +375,7 @@ void where_nothing_is_clear_there_is_no_plan(void**) {
 
 int main() {
   const CMUnitTest tests[] = {
+      cmocka_unit_test(a_joint_that_was_wound_up_is_not_unwound),
       cmocka_unit_test(a_plan_to_the_target_is_clear_of_the_obstacles_as_they_move),
       cmocka_unit_test(a_retreat_is_clear_of_the_obstacles_as_they_move),
       cmocka_unit_test(a_retreat_from_persons_is_clear_of_the_obstacles_as_they_move),

@@ -106,6 +106,29 @@ void plans_are_free_and_end_at_the_target(void**) {
   check(found >= 36, "only %d of 40 were found", found);  // a goal whose way takes more than the horizon is none
 }
 
+/// The first joint has no limits and has made three turns: the plan is that without the turns.
+void a_joint_that_was_wound_up_is_not_unwound(void**) {
+  constexpr double kTurns_rad = 6.0 * M_PI;
+  Model continuous = model();
+  continuous.arm.limits.lower_rad[0] = -HUGE_VAL;
+  continuous.arm.limits.upper_rad[0] = HUGE_VAL;
+  Random random(5);
+  int found = 0;
+  for (int trial = 0; trial < 6; ++trial) {
+    const auto snapshot = random_world(random);
+    const auto planner = std::make_unique<TreePlanner>(continuous);
+    const Guide guide = plan(*planner, *snapshot);
+    snapshot->arm.position_rad[0] += kTurns_rad;
+    planner->reset();
+    const Guide wound_up = plan(*planner, *snapshot);
+    assert_int_equal(wound_up.knots, guide.knots);
+    for (int k = 0; k < guide.knots; ++k)
+      check_near(wound_up.position_rad[k][0], guide.position_rad[k][0] + kTurns_rad, 1e-6);
+    found += guide.knots > 0;
+  }
+  check(found >= 4, "only %d plans were found", found);
+}
+
 /// The tool reaches through a window of 30 cm in a wall that is wider than the arm.
 void a_path_leads_through_a_window(void**) {
   Snapshot snapshot;
@@ -243,6 +266,7 @@ void a_plan_lets_a_board_that_turns_on_the_spot_pass(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(plans_are_free_and_end_at_the_target),
+      cmocka_unit_test(a_joint_that_was_wound_up_is_not_unwound),
       cmocka_unit_test(a_path_leads_through_a_window),
       cmocka_unit_test(the_same_snapshots_give_the_same_plan),
       cmocka_unit_test(a_target_that_moves_has_no_plan),
