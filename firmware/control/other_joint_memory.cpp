@@ -15,10 +15,11 @@ OtherJointMemory::OtherJointMemory(const Arm& arm, double timeout_s)
 
 void OtherJointMemory::complete(OtherJoints& joints) {
   for (size_t j = 0; j < joints_; ++j) {
-    last_.velocity[j] = 0.0;
-    if (!joints.named[j]) continue;
     const double elapsed_s = static_cast<double>(joints.utime - named_utime_[j]) * 1e-6;
-    if (last_.named[j] && elapsed_s > 0.0 && elapsed_s <= timeout_s_)
+    const bool is_recent = last_.named[j] && elapsed_s > 0.0 && elapsed_s <= timeout_s_;
+    if (!is_recent) last_.velocity[j] = 0.0;
+    if (!joints.named[j]) continue;
+    if (is_recent)
       last_.velocity[j] = std::clamp((joints.position[j] - last_.position[j]) / elapsed_s, -fastest_[j], fastest_[j]);
     last_.position[j] = joints.position[j];
     last_.named[j] = true;

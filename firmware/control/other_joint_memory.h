@@ -11,9 +11,10 @@ class OtherJointMemory {
   OtherJointMemory(const Arm& arm, double timeout_s);
 
   /// Replaces the positions of joints that the message does not name by their last ones, at first those of
-  /// Arm::other_positions. The velocity of a named joint is the difference quotient of its last two positions by the
-  /// sender's clock, within its velocity limit; that of the others is 0. Positions are not smoothed: a link is where it
-  /// is reported, from now on.
+  /// Arm::other_positions. The velocity of a joint is the difference quotient of its last two positions by the sender's
+  /// clock, within its velocity limit. It is 0 if they are farther apart in time than timeout_s, or the last one is
+  /// older than that: another sender may go on naming other joints. Positions are not smoothed: a link is where it is
+  /// reported, from now on.
   void complete(OtherJoints& joints);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Values as in obstacle_t. The shapes of links are capsules throughout (Arm::shapes). To add a shape of obstacles:
+/// Values as in obstacle_t. Links have shapes of their own (body_shape.h). To add a shape of obstacles:
 ///   - here: the value, a maker, and the core's data if the capsule does not hold it, with transformed(),
 ///     extrapolated() and inflation_m();
 ///   - model/proximity.cpp: its core (nearest points to a segment) and one case in with_core(), the only switch over

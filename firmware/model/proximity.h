@@ -13,9 +13,9 @@ struct Proximity {
   int obstacle = -1;                                                 ///< index into the ObstacleView
   double distance_m = std::numeric_limits<double>::infinity();       ///< between surfaces, negative if they overlap
   double axis_distance_m = std::numeric_limits<double>::infinity();  ///< from the link's axis to the core
-  Vector3 on_arm = Vector3::Zero();                                  ///< the link axis' nearest point, m
-  Vector3 on_obstacle = Vector3::Zero();                             ///< the core's nearest point, m
-  Vector3 normal = Vector3::UnitZ();                                 ///< unit, from the obstacle to the arm
+  Vector3 on_arm = Vector3::Zero();       ///< nearest point, m: of the link's axis; on its surface if it is no capsule
+  Vector3 on_obstacle = Vector3::Zero();  ///< the core's nearest point, m
+  Vector3 normal = Vector3::UnitZ();      ///< unit, from the obstacle to the arm
 };
 
 /// The closest approach of a moving obstacle to a link at rest.

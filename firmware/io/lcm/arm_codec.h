@@ -36,7 +36,7 @@ class PacketBuffer {
   }
 
  private:
-  std::array<uint8_t, 1024> bytes_;
+  std::array<uint8_t, 2048> bytes_;  // a status with the longest names and message takes 1160
 };
 
 }  // namespace sidestep

@@ -9,9 +9,12 @@ Packet LinkEncoder::encode(const ArmState& arm, const OtherFrames& others, int64
   encoder_.begin(utime);
   int id = 0;
   const auto add = [&](const BodyShape& shape) {
-    Obstacle link = transformed(world_from_base_, link_obstacle(poses, shape, arm.velocity_radps));
+    Obstacle link = link_obstacle(poses, shape, arm.velocity_radps);
+    if (shape.other_joint >= 0)
+      link.velocity_mps +=
+          other_velocity_at(arm_, poses, shape.other_joint, 0.5 * (link.capsule.start + link.capsule.end));
     link.id = id++;
-    encoder_.add(link);
+    encoder_.add(transformed(world_from_base_, link));
   };
   for (const LinkShape& shape : arm_.shapes)
     if (!shape.below_arm) add(shape);

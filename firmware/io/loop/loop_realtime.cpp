@@ -45,12 +45,18 @@ class Receiver {
     }
   }
 
-  TripleBuffer<Received<ArmState>> arm;
-  TripleBuffer<Received<Target>> target;
-  TripleBuffer<Received<ObstacleSet>> obstacles;
-  TripleBuffer<Received<OtherJoints>> other_joints;
-  TripleBuffer<Received<Control>> control;
-  TripleBuffer<Received<Attachments>> attachments;
+  /// The accepted messages of one kind. count: how many there were.
+  template <typename Message>
+  struct Channel : TripleBuffer<Received<Message>> {
+    int64_t count = 0;
+  };
+
+  Channel<ArmState> arm;
+  Channel<Target> target;
+  Channel<ObstacleSet> obstacles;
+  Channel<OtherJoints> other_joints;
+  Channel<Control> control;
+  Channel<Attachments> attachments;
   std::atomic<int64_t> cycles{0};  ///< counted by the loop
   std::atomic<double> foreign_command_s{-HUGE_VAL};
   std::atomic<int64_t> rejected{0};
@@ -58,9 +64,9 @@ class Receiver {
 
  private:
   template <typename Message>
-  void receive(TripleBuffer<Received<Message>>& buffer, Packet packet) {
-    const bool accepted = inputs_.receive(packet, wire_.received_s(), buffer.draft());
-    publish(accepted, buffer);
+  void receive(Channel<Message>& channel, Packet packet) {
+    const bool accepted = inputs_.receive(packet, wire_.received_s(), channel.draft());
+    publish(accepted, channel);
   }
 
   void receive_joint_target(Packet packet) {
@@ -80,10 +86,10 @@ class Receiver {
   }
 
   template <typename Message>
-  void publish(bool accepted, TripleBuffer<Received<Message>>& buffer) {
+  void publish(bool accepted, Channel<Message>& channel) {
     if (accepted) {
-      buffer.draft().count = ++count_;
-      buffer.publish();
+      channel.draft().count = ++channel.count;
+      channel.publish();
     }
     rejected_reason = inputs_.last_reason();
     rejected = inputs_.rejected();
@@ -91,7 +97,6 @@ class Receiver {
 
   Wire& wire_;
   NetworkInputs inputs_;
-  int64_t count_ = 0;
 };
 
 /// The loop itself, on the thread that calls run().

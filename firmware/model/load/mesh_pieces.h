@@ -25,9 +25,9 @@ struct MeshPieces {
   double excess_m = 0.0;      ///< the largest
 };
 
-/// Cuts the surface by planes into at most `most` pieces, 1 to kMostPieces, each enclosed by its convex hull. The next
-/// cut is the one that reduces the sum of the hulls' volumes most, among planes across the three axes. No more cuts
-/// than bring the excess to 4.5 mm for 95 % of the surface and 10 mm at most.
+/// Covers a mesh by at most `most` convex pieces, 1 to kMostPieces: the fewest that bring the excess to 4.5 mm for 95 %
+/// of the surface and 10 mm at most. The part with the largest excess is cut by the plane across one of the three axes
+/// that reduces the hulls' volume most, until there are three times as many parts; then parts are merged in pairs.
 MeshPieces split_mesh(const Mesh& mesh, int most);
 
 }  // namespace sidestep

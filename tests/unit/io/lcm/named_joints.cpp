@@ -81,7 +81,9 @@ void velocities_are_differences_of_positions_within_the_limit(void**) {
   assert_true(receive(inputs, message(20000, {{"left_1", -0.5}}), joints, 0.02));
   check_near(joints.velocity[left], -1.5, 0.0);
   assert_true(receive(inputs, message(30000, {{"head_joint", 0.0}}), joints, 0.03));
-  check_near(joints.velocity[left], 0.0, 0.0);
+  check_near(joints.velocity[left], -1.5, 0.0);  // another sender's message
+  assert_true(receive(inputs, message(130000, {{"head_joint", 0.0}}), joints, 0.13));
+  check_near(joints.velocity[left], 0.0, 0.0);  // nothing was heard of it
   assert_true(receive(inputs, message(500000, {{"left_1", -0.4}}), joints, 0.5));
   check_near(joints.velocity[left], 0.0, 0.0);  // too long ago for a velocity
 }
