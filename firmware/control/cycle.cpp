@@ -194,7 +194,8 @@ void move_arm(const Model& model, const Inputs& inputs, const MonitorResult& mon
 
   const ObstacleView obstacles = view_obstacles(model, inputs.obstacles, now_s);
   const ShieldSettings& shield = model.settings.shield;
-  const Reach reach{shield.range_m, shield.pass_horizon_s, shield.person_clearance_m};
+  const double stopping_s = stopping_time_s(model.arm.limits, arm.velocity_radps) + model.settings.period_s();
+  const Reach reach{shield.range_m, shield.pass_horizon_s, shield.person_clearance_m, &arm.velocity_radps, stopping_s};
   const Clearance clearance = measure_clearance(model.arm, poses, obstacles, reach);
   probe.passed(Stage::kClearance);
 

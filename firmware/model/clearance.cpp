@@ -191,19 +191,44 @@ class Gatherer {
     return link.body > 0 ? relevant_axis_distance_m(radii_m, 0.0, travel_m) : radii_m + clearance_.nearest.distance_m;
   }
 
-  /// Adds a pair to the list. Once the list is full, limit_m_ is the greatest distance in it, and a nearer pair
-  /// replaces the pair of that distance.
+  /// Adds a pair to the list. In a full list it replaces the least urgent pair if it is more urgent, and limit_m_ is a
+  /// distance from which on no pair can be.
   void keep(const Proximity& now, const ClosestApproach& approach, const Vector3& velocity_mps) {
     auto& near = clearance_.near;
-    if (near.is_full())
-      near[farthest_] = {now, approach, velocity_mps};
-    else
-      near.emplace(now, approach, velocity_mps);
-    if (!near.is_full()) return;
-    const auto less = [](const NearPair& a, const NearPair& b) { return a.least_distance_m() < b.least_distance_m(); };
-    farthest_ = static_cast<int>(std::max_element(near.begin(), near.end(), less) - near.begin());
-    listed_m_ = near[farthest_].least_distance_m();
+    const NearPair pair{now, approach, velocity_mps};
+    if (near.is_full()) {
+      const double margin_m = margin_of(pair);
+      if (margin_m >= margins_m_[last_]) return;
+      near[last_] = pair;
+      margins_m_[last_] = margin_m;
+    } else {
+      near.add(pair);
+      if (!near.is_full()) return;
+      find_fastest_link();
+      for (const NearPair& listed : near) margins_m_.add(margin_of(listed));
+    }
+    last_ = static_cast<int>(std::max_element(margins_m_.begin(), margins_m_.end()) - margins_m_.begin());
+    listed_m_ = margins_m_[last_] + fastest_mps_ * reach_.stopping_s;
     limit_m_ = std::min(limit_m_, listed_m_);
+  }
+
+  /// What is left of the distance of a pair when the arm has stopped, m; the less, the more urgent the pair.
+  double margin_of(const NearPair& pair) const {
+    const double distance_m = pair.least_distance_m();
+    if (fastest_mps_ == 0.0) return distance_m;
+    const int body = links_.shapes[pair.now.shape].body;
+    const Vector3 link_mps = point_velocity(poses_, body, pair.now.on_arm, *reach_.velocity_radps);
+    return distance_m - std::max(0.0, -pair.now.normal.dot(link_mps)) * reach_.stopping_s;
+  }
+
+  /// A bound of the speed of all points of the links. Along an axis the ends are fastest.
+  void find_fastest_link() {
+    if (!reach_.velocity_radps) return;
+    const JointVector& velocity_radps = *reach_.velocity_radps;
+    for (const Link& link : links_.shapes)
+      for (const Vector3& end : {link.capsule.start, link.capsule.end})
+        fastest_mps_ = std::max(fastest_mps_, point_velocity(poses_, link.body, end, velocity_radps).norm());
+    fastest_mps_ += velocity_radps.cwiseAbs().sum() * links_.radius_m;
   }
 
   const Arm& arm_;
@@ -212,11 +237,13 @@ class Gatherer {
   const ObstacleView& view_;
   const double horizon_s_;
   const Reach reach_;
-  double listed_m_ = std::numeric_limits<double>::infinity();  ///< the greatest distance in a full list
+  double listed_m_ = std::numeric_limits<double>::infinity();  ///< no pair with this distance enters a full list
   double limit_m_ = 0.0;  ///< pairs of this obstacle whose least distance is not below this are not kept
   Clearance& clearance_;
-  int last_body_ = 0;  ///< links of bodies above may touch the obstacle
-  int farthest_ = 0;   ///< index of the pair with the greatest distance in a full list
+  int last_body_ = 0;                        ///< links of bodies above may touch the obstacle
+  BoundedList<double, kMaxNear> margins_m_;  ///< margin_of() each pair of a full list
+  int last_ = 0;                             ///< index of the largest of them
+  double fastest_mps_ = 0.0;                 ///< find_fastest_link()
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct NearPair {
   ClosestApproach approach;
   Vector3 velocity_mps = Vector3::Zero();  ///< of the obstacle's material at now.on_obstacle
 
-  /// The lesser of the surface distances now and at the closest approach: what makes one pair more urgent than another.
+  /// The lesser of the surface distances now and at the closest approach.
   double least_distance_m() const { return std::min(now.distance_m, approach.distance_m); }
 };
 
@@ -30,8 +30,10 @@ struct Clearance {
   Proximity nearest;       ///< least surface distance, over all shapes of the arm
   Proximity nearest_axis;  ///< least axis distance, over the moving shapes (docs/paper.md item 7: A_0 and d_0)
 
-  /// Pairs of a movable link shape and an obstacle within the Reach, unordered. If there are more than kMaxNear, those
-  /// with the least least_distance_m() are kept.
+  /// Pairs of a movable link shape and an obstacle within the Reach, unordered. If there are more than kMaxNear, the
+  /// most urgent are kept: those with the least least_distance_m() - v t, where v is the speed at which the arm's own
+  /// motion closes the pair, if it does, and t is Reach::stopping_s. A crowd beside a link that rests thus leaves
+  /// places for what a fast link comes to.
   BoundedList<NearPair, kMaxNear> near;
 };
 
@@ -60,11 +62,14 @@ struct ObstacleView {
 };
 
 /// Which pairs are collected: those with a surface distance below range_m now, or at the closest approach within
-/// horizon_s at constant velocity. For persons person_range_m counts where it is larger.
+/// horizon_s at constant velocity. For persons person_range_m counts where it is larger. velocity_radps: of the joints,
+/// n x 1; null for an arm at rest. stopping_s: a bound of the time that the arm takes to stop.
 struct Reach {
   double range_m;
   double horizon_s;
   double person_range_m = 0.0;
+  const JointVector* velocity_radps = nullptr;
+  double stopping_s = 0.0;
 };
 
 /// Distances of all link shapes to all obstacles, extrapolated to now and grown. Takes time proportional to shapes x

@@ -26,6 +26,10 @@ VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lo
   return range;
 }
 
+double stopping_time_s(const JointLimits& limits, const JointVector& velocity_radps) {
+  return (velocity_radps.array().abs() / limits.acceleration_radps2.array()).maxCoeff();
+}
+
 VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowest_rad, const JointVector& highest_rad,
                              const JointVector& last_velocity_radps, double period_s) {
   VelocityRange range = sustainable_range(limits, lowest_rad, highest_rad, period_s);

@@ -22,6 +22,9 @@ VelocityRange velocity_range(const JointLimits& limits, const JointVector& lowes
 VelocityRange sustainable_range(const JointLimits& limits, const JointVector& lowest_rad,
                                 const JointVector& highest_rad, double period_s);
 
+/// The time that the arm takes to stop, all joints braking at their acceleration limits, s.
+double stopping_time_s(const JointLimits& limits, const JointVector& velocity_radps);
+
 /// The largest speed v toward a position limit with which the joint can still stop at the limit: one more period at v,
 /// then braking at the acceleration a, covers the gap, v T + v^2 / (2 a) = gap. gap_rad is the distance to the limit,
 /// positive before it, for the lower limit as for the upper one. A joint past the limit has a negative gap; then v is

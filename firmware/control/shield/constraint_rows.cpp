@@ -170,7 +170,7 @@ class RowMaker {
         input_(input),
         axes_(input.poses),
         following_error_rad_(input.commanded_rad - input.position_rad),
-        braking_s_(braking_s(input)),
+        braking_s_(stopping_time_s(input.arm.limits, input.last_velocity_radps)),
         sustainable_(sustainable),
         range_(range),
         within_(is_within(range, sustainable)),
@@ -295,10 +295,6 @@ class RowMaker {
   }
   const BodyShape& shape(int index) const { return shape_at(input_.arm, input_.poses, index); }
 
-  /// The time that the arm takes to stop, s.
-  static double braking_s(const ShieldInput& input) {
-    return (input.last_velocity_radps.array().abs() / input.arm.limits.acceleration_radps2.array()).maxCoeff();
-  }
   /// Of a body, by the last commanded velocity, rad/s.
   Vector3 angular_velocity(int body) const {
     Vector3 sum_radps = Vector3::Zero();

@@ -165,6 +165,39 @@ void the_near_list_holds_the_pairs_within_reach_and_the_nearest_of_too_many(void
   check(overfull > 5 && partly > 5, "%d overfull, %d partly filled", overfull, partly);
 }
 
+/// Among more pairs than the list holds those are kept that have the least distance when the arm has stopped.
+void the_near_list_of_an_arm_that_moves_holds_what_it_comes_to(void**) {
+  Random random(9);
+  int overfull = 0, different = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto set = random_set(random, 100 + random.index(300), 1.2);
+    const ObstacleView view{set.get(), 0.05, 0.0};
+    const LinkPoses poses = forward_kinematics(lwa3(), random.configuration(lwa3()));
+    const JointVector velocity_radps = random.joints(7, -1.5, 1.5);
+    const Reach reach{0.4, 0.5, 0.0, &velocity_radps, random.uniform(0.0, 0.3)};
+    const auto margin_m = [&](const NearPair& pair) {
+      const int body = lwa3().shapes[static_cast<size_t>(pair.now.shape)].body;
+      const Vector3 link_mps = point_velocity(poses, body, pair.now.on_arm, velocity_radps);
+      return least_distance_m(pair) - std::max(0.0, -pair.now.normal.dot(link_mps)) * reach.stopping_s;
+    };
+    std::vector<double> expected, actual, at_rest;
+    for (const NearPair& pair : all_pairs(poses, view, reach.horizon_s))
+      if (moves(pair) && least_distance_m(pair) < reach.range_m) expected.push_back(margin_m(pair));
+    for (const NearPair& pair : measure_clearance(lwa3(), poses, view, reach).near) actual.push_back(margin_m(pair));
+    for (const NearPair& pair : measure_clearance(lwa3(), poses, view, {0.4, 0.5}).near)
+      at_rest.push_back(margin_m(pair));
+    if (expected.size() <= kMaxNear) continue;
+    ++overfull;
+    std::sort(expected.begin(), expected.end());
+    std::sort(actual.begin(), actual.end());
+    std::sort(at_rest.begin(), at_rest.end());
+    assert_int_equal(actual.size(), kMaxNear);
+    for (size_t i = 0; i < actual.size(); ++i) check_near_because(actual[i], expected[i], 1e-9, "trial %d", trial);
+    different += at_rest.back() > actual.back() + 1e-6;
+  }
+  check(overfull > 50 && different > 25, "%d overfull, %d differ from those of an arm at rest", overfull, different);
+}
+
 /// Spheres take a faster computation than other shapes, above all receding ones.
 void a_near_pair_has_the_values_of_the_general_computation(void**) {
   Random random(7);
@@ -307,6 +340,7 @@ int main() {
       cmocka_unit_test(normal_is_a_unit_vector_across_the_link_where_the_axes_meet),
       cmocka_unit_test(nearest_is_the_true_minimum_among_many),
       cmocka_unit_test(the_near_list_holds_the_pairs_within_reach_and_the_nearest_of_too_many),
+      cmocka_unit_test(the_near_list_of_an_arm_that_moves_holds_what_it_comes_to),
       cmocka_unit_test(a_near_pair_has_the_values_of_the_general_computation),
       cmocka_unit_test(obstacles_are_extrapolated_by_their_age_and_grown),
       cmocka_unit_test(the_base_column_counts_for_the_surface_distance_but_not_for_the_axis_distance),
