@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "tests/support/check.h"
+#include "tests/support/scratch.h"
 
 using namespace sidestep;
 using namespace sidestep::campaign;
@@ -36,7 +37,7 @@ void objects_and_postures_are_read(void**) {
 
 /// A copy of the problem with one text replaced; returns the error.
 std::string error_with(const std::string& file, const std::string& from, const std::string& to) {
-  const std::filesystem::path folder = "build/tests/problems";
+  const std::filesystem::path folder = test::scratch_folder() + "/problems";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   for (const auto& entry : std::filesystem::directory_iterator("tests/data/problems/under-table")) {
