@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "tests/support/check.h"
@@ -94,21 +95,25 @@ void a_neighbour_that_sends_no_links_stops_the_arm(void**) {
   test::LiveArm arm(test::lwa3().limits, test::home_rad());
   arm.target_m = Vector3(0.1, 0.45, 0.7);
   int64_t links_utime = 0;
-  const auto run = [&](double duration_s, bool neighbour_sends) {
-    for (double t_s = 0.0; t_s < duration_s; t_s += 0.02) {
+  /// Until the condition holds, for at most limit_s. Returns whether it does.
+  const auto run_until = [&](const std::function<bool()>& holds, bool neighbour_sends, double limit_s) {
+    for (double t_s = 0.0; t_s < limit_s && !holds(); t_s += 0.02) {
       const obstacle_t ball = test::sphere(0, Vector3(3, 3, 3), 0.1, Vector3::Zero());
       if (neighbour_sends) arm.peer.send("LINKS_R", test::obstacles_message(++links_utime, {ball}));
       arm.run(0.02);
     }
-    return arm.status().mode;
+    return holds();
   };
   arm.peer.await([&] { return !arm.peer.statuses.empty(); }, 10.0);
-  check(run(1.0, false) == controller_status_t::WAIT, "%s", arm.status().message.c_str());
-  check(run(1.0, true) == controller_status_t::TRACK, "%s", arm.status().message.c_str());
-  check(run(0.2, false) == controller_status_t::BRAKE, "%s", arm.status().message.c_str());
-  run(0.5, false);
-  check_near(arm.speed_radps(), 0.0, 0);
-  check(run(0.5, true) == controller_status_t::TRACK, "%s", arm.status().message.c_str());
+  const auto waits = [&] { return arm.status().mode == controller_status_t::WAIT; };
+  const auto tracks = [&] { return arm.status().mode == controller_status_t::TRACK; };
+  const auto brakes = [&] { return arm.status().mode == controller_status_t::BRAKE; };
+  check(!run_until([&] { return !waits(); }, false, 1.0), "%s", arm.status().message.c_str());
+  check(run_until([&] { return tracks() && arm.speed_radps() > 0.3; }, true, 3.0), "%g rad/s, %s", arm.speed_radps(),
+        arm.status().message.c_str());
+  check(run_until(brakes, false, 0.5), "%s", arm.status().message.c_str());
+  check(run_until([&] { return arm.speed_radps() == 0.0; }, false, 2.0), "%g rad/s", arm.speed_radps());
+  check(run_until(tracks, true, 2.0), "%s", arm.status().message.c_str());
   test::check_stream(arm);
 }
 
