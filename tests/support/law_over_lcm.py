@@ -103,7 +103,10 @@ def compare(network, rows):
             mode = controller_status_t.decode(replies["CONTROLLER_STATUS"]).mode
             if mode != controller_status_t.TRACK:
                 sys.exit(f"law_over_lcm: mode {mode} instead of TRACK")
-            worst = max(worst, np.abs(velocity - values(row, "expect_qd", range(1, 8))).max())
+            difference = np.abs(velocity - values(row, "expect_qd", range(1, 8)))
+            if not np.isfinite(difference).all():  # max() would ignore NaN
+                sys.exit(f"law_over_lcm: the command is {velocity}")
+            worst = max(worst, difference.max())
     return worst
 
 
