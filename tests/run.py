@@ -156,7 +156,9 @@ def main():
     arguments = parser.parse_args()
     if missing := [binary for binary in arguments.binaries if not os.access(binary, os.X_OK)]:
         parser.error(f"not a program: {missing[0]}")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup(1) ignores SIGHUP
+            signal.signal(number, signal.default_int_handler)
     try:
         outcomes = run_all(arguments.binaries, arguments.jobs, arguments.time_limit, arguments.under)
     except KeyboardInterrupt:
