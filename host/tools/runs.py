@@ -261,11 +261,12 @@ def signals_as_flag():
             interrupt()
 
 
-def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None):
+def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, log=None, viewer=None):
     """Run one simulation to its end, write the CSV `record` and return the simulator's exit code (HELD or BROKEN).
 
     In real time (lockstep=False) the simulator writes to this terminal. It records all messages in `log`, beside which
-    is then its verdict. RunFailed if a process fails.
+    is then its verdict. When the process `viewer` ends, so does the simulation, and None is returned. RunFailed if a
+    process fails.
     """
     scenario = load_scenario(scenario_file)
     if lockstep:
@@ -286,10 +287,13 @@ def execute(scenario_file, law, record, config=None, lcm_url="", lockstep=True, 
             for name, command in commands.items():
                 with open(logs[name], "w") as output:
                     processes[name] = start(command, output if lockstep or name != "sim" else None)
-            wait(processes, scenario.get("duration_s", np.inf) * (10 if lockstep else 1) + 60)
+            watched = processes | ({"viewer": viewer} if viewer else {})
+            wait(watched, scenario.get("duration_s", np.inf) * (10 if lockstep else 1) + 60)
             lost = {name for name, process in processes.items() if name != "sim" and process.poll() is not None}
         finally:
             codes = {name: stop(process) for name, process in reversed(processes.items())}
+    if viewer and viewer.poll() is not None:
+        return None
     sim = codes.pop("sim")
     if not lost and sim not in (HELD, BROKEN):
         reason = f": {last_line(logs['sim'])}" if lockstep else ""

@@ -81,7 +81,7 @@ def main():
     with viewer(scenario, arguments.port) as view:
         while view.poll() is None:
             try:
-                runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False)
+                runs.execute(scenario_file, "sidestep", runs.RECORDS / "view.csv", lockstep=False, viewer=view)
             except runs.ControllerStopped as stopped:
                 print(f"\n{stopped}")
                 return 0

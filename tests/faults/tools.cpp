@@ -68,6 +68,9 @@ void the_error_about_an_unknown_scenario_lists_the_scenarios(void**) {
 void a_taken_port_is_refused_before_anything_starts(void**) {
   passes("taken_port");
 }
+void a_view_that_ends_also_ends_a_scenario_without_end(void**) {
+  passes("lost_view");
+}
 void the_commands_that_make_play_names_run(void**) {
   passes("play_commands");
 }
@@ -132,6 +135,7 @@ int main() {
       cmocka_unit_test_teardown(the_error_about_an_unknown_scenario_lists_the_scenarios,
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_taken_port_is_refused_before_anything_starts, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(a_view_that_ends_also_ends_a_scenario_without_end, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(the_commands_that_make_play_names_run, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_script_that_another_python_starts_finds_its_packages, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_run_beside_another_controller_is_refused, sidestep::test::kill_processes),

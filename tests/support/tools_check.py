@@ -398,6 +398,12 @@ def unknown_scenario():
         assert str(error).startswith("host/scenarios/nope.yaml: no such scenario; there are box, closing-gap,"), error
 
 
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
 def taken_port():
     """A port that another process listens on is refused before anything starts."""
     with socket.socket() as other:
@@ -410,6 +416,23 @@ def taken_port():
                 assert False
             except runs.RunFailed as failure:
                 assert str(failure).startswith(f"port {port}: Address already in use") and "\n" not in str(failure)
+
+
+def lost_view():
+    """A view that ends also ends a scenario without end, which is said."""
+    port = str(free_port())
+
+    @contextlib.contextmanager
+    def ending_view(*_):
+        yield subprocess.Popen(["sleep", "1"])
+    with mock.patch.multiple(sys, argv=["", str(ROOT / "host/scenarios/play.yaml"), "--port", port]), \
+            mock.patch.dict(os.environ, LCM_DEFAULT_URL=runs.private_url()), \
+            mock.patch.object(show, "viewer", ending_view):
+        try:
+            show.main()
+            assert False
+        except runs.RunFailed as failure:
+            assert str(failure).startswith("the view has ended"), failure
 
 
 def play_commands():
@@ -617,7 +640,7 @@ CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, ne
                                               allowed_touch, panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, closed_logs,
                                               survivors_of_nohup, coordinates, refusals, announcements,
-                                              unknown_scenario, taken_port, play_commands, another_python,
+                                              unknown_scenario, taken_port, lost_view, play_commands, another_python,
                                               busy_network, networks, camera, second_signal, signal_within_poll,
                                               late_receiver, watched_texts, hostile_bytes, goals,
                                               manual_pages)}
