@@ -12,6 +12,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import environment
 import numpy as np
 import yaml
 from PIL import Image

@@ -171,8 +171,9 @@ def config_of(scenario):
 
 
 def read_csv(file):
+    """Column name -> array; empty for a file without a whole row of numbers."""
     with open(file, newline="") as stream:
-        names, *rows = csv.reader(stream)
+        names, *rows = [*csv.reader(stream)] or [[]]
     columns = zip(*(row for row in rows if len(row) == len(names)))
     return {name: numeric(column) for name, column in zip(names, columns)}
 

@@ -88,8 +88,8 @@ def run_simulator(rng, controller, url, output, until_s, memory):
     finally:
         sim.send_signal(signal.SIGKILL)
         sim.wait()
-    columns = runs.read_csv(record) if record.stat().st_size else {}
-    if "clearance_m" not in columns:
+    columns = runs.read_csv(record)
+    if not columns:
         return None
     links_m = columns["self_clearance_m"]
     return float(min(columns["clearance_m"].min(), np.where(links_m <= 0, links_m, np.inf).min()))
@@ -123,6 +123,8 @@ def soak(duration_s, rng):
             codes = [runs.stop(process) for process in processes]
     if codes[0]:
         raise runs.RunFailed(f"build/controller {runs.ending(codes[0])}")
+    if not memory:
+        raise runs.RunFailed(f"build/sim never ran for a second: {runs.last_line(FOLDER / 'sim.log')}")
     return clearances, memory
 
 

@@ -6,8 +6,10 @@ loop for every CPU. Goal: the loop's p99 is at most 1.5 times that of cyclictest
 skipped.
 """
 import argparse
+import subprocess
 import time
 
+import environment
 import yaml
 
 import latency
@@ -44,7 +46,10 @@ def measure(name, duration_s, rate_hz, stressed):
         if controller.poll() is not None:
             raise runs.RunFailed(f"build/controller {runs.ending(controller.returncode)}")
         if cyclictest:
-            cyclictest.wait(10)
+            try:
+                cyclictest.wait(10)
+            except subprocess.TimeoutExpired:
+                raise runs.RunFailed(f"cyclictest is not finished after {duration_s + 10:g} s") from None
     finally:
         for process in processes:
             runs.stop(process)
@@ -68,11 +73,18 @@ def show(name, loop, cyclictest):
           flush=True)
 
 
+def rate(text):
+    """A rate on the command line that the controller accepts, Hz."""
+    if not 10 <= (value := float(text)) <= 2000:
+        raise argparse.ArgumentTypeError(f"{text} is not from 10 to 2000")
+    return value
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--duration", type=runs.seconds, default=30, metavar="S",
                         help="duration of each run (default %(default)s)")
-    parser.add_argument("--rate", type=float, default=100, metavar="HZ", help="control rate (default %(default)s)")
+    parser.add_argument("--rate", type=rate, default=100, metavar="HZ", help="control rate (default %(default)s)")
     arguments = parser.parse_args()
     FOLDER.mkdir(parents=True, exist_ok=True)
     print(f"{'wake-up, us':16} {'':10} {'p50':>9} {'p99':>9} {'p99.9':>9} {'worst':>9}", flush=True)

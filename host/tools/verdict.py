@@ -49,6 +49,8 @@ def record_of(run, log):
     if not file.is_file() or not tracking.size:
         return None
     columns = runs.read_csv(file)
+    if not columns:
+        return None
     return run._replace(columns=columns | {"t_s": columns["t_s"] + run.columns["t_s"][tracking[0]]})
 
 

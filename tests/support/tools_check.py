@@ -37,6 +37,7 @@ import send_obstacles
 import send_target
 import show
 import stage
+import timing
 import view
 import visuals
 import watch
@@ -379,6 +380,7 @@ def refusals():
                 (report, [log, "--config", no_robot], 1, "robot has no urdf"),
                 (report, [log, "--urdf", nonsense], 1, f"{nonsense}: syntax error"),
                 (view, ["--config", "/nonexistent"], 1, "No such file"),
+                (timing, ["--rate", "0"], 2, "0 is not from 10 to 2000"),
                 (view, ["--port", "80000"], 2, "80000 is not from 1 to 65535"),
                 (view, ["--config", nonsense], 1, f"{nonsense}: mapping")):
             result = refusal(script, *words)
@@ -451,9 +453,10 @@ def play_commands():
 
 def another_python():
     """A script that a Python without its packages starts goes on with that of build/venv."""
-    done = subprocess.run(["/usr/bin/python3", ROOT / "host/tools/send_target.py", "--help"], capture_output=True,
-                          text=True)
-    assert done.returncode == 0 and done.stdout.startswith("usage: send_target.py"), done
+    for name in ("send_target.py", "docs.py", "timing.py"):
+        done = subprocess.run(["/usr/bin/python3", ROOT / "host/tools" / name, "--help"], capture_output=True,
+                              text=True)
+        assert done.returncode == 0 and done.stdout.startswith(f"usage: {name}"), done
 
 
 def busy_network():
