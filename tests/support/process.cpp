@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <set>
 #include <thread>
 
@@ -74,6 +75,10 @@ int Process::wait(double limit_s) {
 
 std::string Process::output() const {
   return text_of(log_file_);
+}
+
+double patient_s(double limit_s) {
+  return std::getenv("UNTIMED") ? 10.0 * limit_s : limit_s;
 }
 
 int kill_processes(void**) {

@@ -30,6 +30,9 @@ class Process {
   std::string log_file_;
 };
 
+/// The limit, or ten times as long in a build whose times mean nothing (UNTIMED), as one with sanitizers.
+double patient_s(double limit_s);
+
 /// Teardown of every test that starts processes: a failed check skips destructors.
 int kill_processes(void** state);
 
