@@ -186,7 +186,7 @@ lint: $(WIRE) $(READY).lint ## check all sources with clang-format and cppcheck,
 	@host/setup/lint $(INCLUDES) $(OMPL_INCLUDE) $(DEFINE_VERSION)
 
 clean: ## remove what was built; keep the virtual environment, runs and figures
-	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/*.a $(BUILD)/*.jar \
+	rm -rf $(BUILD)/fuzz $(BUILD)/sanitize $(BUILD)/arm64 $(BUILD)/obj $(BUILD)/lcm $(BUILD)/tests $(PROGRAMS) $(BUILD)/bench $(BUILD)/.flags $(BUILD)/.objects $(BUILD)/*.a $(BUILD)/*.jar \
 	  $(SHARED) $(BUILD)/stage $(BUILD)/deb $(BUILD)/*.deb $(BUILD)/shlibdeps
 
 help: ## print this list
@@ -216,9 +216,10 @@ $(READY).%: host/setup/debian.txt | $(READY)
 	@host/setup/debian $*
 	@touch $@
 
+# One at a time, since pip does not wait for itself.
 $(BUILD)/.python-%: host/setup/python-%.txt | $(READY)
 	@echo "set-up: Python packages of $<"
-	@$(BUILD)/venv/bin/python -m pip install -q --disable-pip-version-check -r $<
+	@flock $(BUILD)/venv $(BUILD)/venv/bin/python -m pip install -q --disable-pip-version-check -r $<
 	@touch $@
 endif
 
@@ -241,10 +242,12 @@ $(WIRE): $(LCM_TYPES) | $(READY)
 $(PYPROJECT): host/setup/pyproject.toml.in VERSION $(WIRE)
 	@sed "s/@VERSION@/$$(cat VERSION)/" $< >$@
 
-# Changes when the flags do: then everything is compiled again.
-$(BUILD)/.flags: $(if $(COUNTING),,always) | $(READY)
+# Each changes when its text does: then everything is compiled again, or the libraries lose objects without a source.
+$(BUILD)/.flags: private TEXT = $(CXX) $(CPPFLAGS) $(FLAGS) $(HEADERS)
+$(BUILD)/.objects: private TEXT = $(FIRMWARE) $(SIM) $(RELAY) $(REPLAY) $(CAMPAIGN) $(SUPPORT) $(BENCH)
+$(BUILD)/.flags $(BUILD)/.objects: $(if $(COUNTING),,always) | $(READY)
 	@mkdir -p $(@D)
-	@echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' | cmp -s - $@ || echo '$(CPPFLAGS) $(FLAGS) $(HEADERS)' >$@
+	@echo '$(TEXT)' | cmp -s - $@ || echo '$(TEXT)' >$@
 
 $(BUILD)/obj/precompiled.h: host/setup/precompiled.h | $(READY)
 	@mkdir -p $(@D)
@@ -276,8 +279,9 @@ $(BUILD)/libsim.a: $(SIM)
 $(BUILD)/libcampaign.a: $(CAMPAIGN)
 $(BUILD)/librelay.a: $(RELAY)
 $(BUILD)/libsupport.a: $(SUPPORT)
+$(LIBRARIES): $(BUILD)/.objects
 $(BUILD)/lib%.a:
-	@rm -f $@ && $(AR) rcs $@ $^
+	@rm -f $@ && $(AR) rcs $@ $(filter %.o,$^)
 
 $(BUILD)/controller: $(BUILD)/obj/firmware/main.o $(BUILD)/libfirmware.a
 	@$(LINK) $^ $(LIBS) $(LDLIBS) -o $@
