@@ -149,7 +149,7 @@ def main():
     parser.add_argument("binaries", type=Path, nargs="*", metavar="BINARY")
     parser.add_argument("--jobs", type=int,
                         help="number of parallel binaries (default 2, or 1 where they would share a network)")
-    parser.add_argument("--time-limit", type=float, default=360, metavar="S",
+    parser.add_argument("--time-limit", type=float, default=600, metavar="S",
                         help="of each binary (default %(default)s)")
     parser.add_argument("--under", type=str.split, default=[], metavar="COMMAND",
                         help="command that runs the binaries, such as qemu")
