@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/model/square_matrix.h"
+#include "host/campaign/stopping.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -18,12 +19,6 @@ Joints damped_inverse(const ToolJacobian& jacobian, const Vector3& tool_mps) {
   const double lambda = sigma < kSigma ? kLambda * (1.0 - sigma / kSigma) : 0.0;
   gram.diagonal().array() += lambda * lambda;
   return jacobian.transpose() * solve_ldlt(gram, tool_mps);
-}
-
-/// Largest velocity from which a joint can still stop within gap_rad, rad/s.
-double stoppable(double gap_rad, double acceleration_radps2) {
-  const double step = acceleration_radps2 * kPeriod_s;
-  return std::sqrt(step * step + 2.0 * acceleration_radps2 * std::max(0.0, gap_rad)) - step;
 }
 
 }  // namespace
@@ -42,7 +37,8 @@ Joints plain_tracking(const JudgeArm& arm, const Limits& limits, const PointMoti
   velocity /= std::max(1.0, velocity.cwiseAbs().cwiseQuotient(limits.velocity_radps).maxCoeff());
   for (int i = 0; i < velocity.size(); ++i) {
     const double a = limits.acceleration_radps2[i], step = a * kPeriod_s;
-    const double up = stoppable(limits.upper_rad[i] - q_rad[i], a), down = stoppable(q_rad[i] - limits.lower_rad[i], a);
+    const double up = stoppable_radps(std::max(0.0, limits.upper_rad[i] - q_rad[i]), a, kPeriod_s);
+    const double down = stoppable_radps(std::max(0.0, q_rad[i] - limits.lower_rad[i]), a, kPeriod_s);
     velocity[i] = std::clamp(std::clamp(velocity[i], -down, up), qd_radps[i] - step, qd_radps[i] + step);
   }
   return velocity;

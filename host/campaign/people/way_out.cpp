@@ -7,6 +7,7 @@
 
 #include "firmware/model/nearest_points.h"
 #include "host/campaign/random.h"
+#include "host/campaign/stopping.h"
 
 namespace sidestep::campaign {
 namespace {
@@ -25,12 +26,6 @@ struct Branch {
   std::shared_ptr<const Motion> motion;
   size_t index;
 };
-
-/// Largest velocity from which a joint can still stop within gap_rad.
-double stoppable(double gap_rad, double acceleration_radps2) {
-  const double step = acceleration_radps2 * kStep_s;
-  return std::sqrt(0.25 * step * step + 2.0 * acceleration_radps2 * gap_rad) - 0.5 * step;
-}
 
 class Search {
  public:
@@ -85,8 +80,8 @@ class Search {
     ArmInstant next{arm.period + kStride, arm.q_rad, arm.qd_radps};
     for (int i = 0; i < to_rad.size(); ++i) {
       const double gap_rad = to_rad[i] - arm.q_rad[i], a = limits_.acceleration_radps2[i];
-      const double speed =
-          std::min({stoppable(std::abs(gap_rad), a), limits_.velocity_radps[i], std::abs(gap_rad) / kStep_s});
+      const double speed = std::min({stoppable_radps(std::abs(gap_rad), a, 0.5 * kStep_s), limits_.velocity_radps[i],
+                                     std::abs(gap_rad) / kStep_s});
       next.qd_radps[i] =
           std::clamp(std::copysign(speed, gap_rad), arm.qd_radps[i] - a * kStep_s, arm.qd_radps[i] + a * kStep_s);
       next.q_rad[i] += next.qd_radps[i] * kStep_s;
