@@ -6,9 +6,7 @@
 namespace sidestep::campaign {
 namespace {
 
-constexpr double kNear_m = 0.15;      // more than the arm and an obstacle can close in one period
-constexpr double kSelfNear_m = 0.05;  // the same for two links
-constexpr double kFurnitureNear_m = 0.05, kFurnitureSelfNear_m = 0.02;  // the same where most of the scene rests
+constexpr double kFurnitureNear_m = 0.05, kFurnitureSelfNear_m = 0.02;  // kNear_m where most of the scene rests
 constexpr int kPeopleChecks = 5;                                        // a hand may move 60 mm in a period
 
 /// The time from which on the witness's tool stays within kArrived_m of its goal.
@@ -21,6 +19,11 @@ double witness_arrival_s(const Scene& scene) {
 }
 
 }  // namespace
+
+int contact_checks(const Scene& scene) {
+  const int own = scene.arm->contact_checks_per_period();
+  return scene.family->has_people() ? std::max(own, kPeopleChecks) : own;
+}
 
 Judge::Judge(const Scene& scene, const Joints& qd_radps)
     : scene_(scene),
@@ -53,7 +56,7 @@ bool Judge::is_scored(double t_s, double error_m) {
 void Judge::record_state(int k, const Joints& q_rad) {
   const double t_s = k * kPeriod_s;
   const ArmPose arm = scene_.arm->pose(q_rad);
-  measure_clearance(arm, q_rad, t_s);
+  measure_clearance(arm, q_rad, k);
   measure_joints(q_rad);
   measure_tool_error(arm, t_s);
   measure_arrival(q_rad, t_s);
@@ -63,24 +66,30 @@ bool Judge::is_decided() const {
   return scene_.family->boxes && at_goal_ && now_s_ - far_until_s_ > kDwell_s;
 }
 
-void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s) {
+void Judge::measure_clearance(const ArmPose& arm, const Joints& q_rad, int k) {
+  const double t_s = k * kPeriod_s;
   const double clearance_m = clearance_at(scene_, arm, t_s, std::max(kNear_m, metrics_.clearance_m));
   near_ = clearance_m < kNear_m;
-  metrics_.clearance_m = std::min(metrics_.clearance_m, clearance_m);
+  count_clearance({k, 0.0, clearance_m});
   measure_mover(arm, t_s);
   const double links_m = measure_self_clearance(arm);
   const bool rests = scene_.family->has_furniture();  // and is always near: only what is very near is looked at closely
   const bool look_between =
       rests ? clearance_m < kFurnitureNear_m || links_m < kFurnitureSelfNear_m : near_ || links_m < kSelfNear_m;
-  const int own = scene_.arm->contact_checks_per_period();
-  const int checks = scene_.family->has_people() ? std::max(own, kPeopleChecks) : own;
+  const int checks = contact_checks(scene_);
   for (int i = 1; i < checks && look_between; ++i) {
     const double back = static_cast<double>(i) / checks;
     const ArmPose between = scene_.arm->pose(q_rad + back * (last_rad_ - q_rad));
-    metrics_.clearance_m = clearance_at(scene_, between, t_s - back * kPeriod_s, metrics_.clearance_m);
+    const double within_m = std::max(0.0, metrics_.clearance_m);
+    count_clearance({k, back, clearance_at(scene_, between, t_s - back * kPeriod_s, within_m)});
     measure_mover(between, t_s - back * kPeriod_s);
     measure_self_clearance(between);
   }
+}
+
+void Judge::count_clearance(const Contact& instant) {
+  metrics_.clearance_m = std::min(metrics_.clearance_m, instant.clearance_m);
+  if (instant.clearance_m < 0.0) contacts_.push_back(instant);
 }
 
 void Judge::measure_mover(const ArmPose& arm, double t_s) {

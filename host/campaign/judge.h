@@ -6,6 +6,21 @@
 
 namespace sidestep::campaign {
 
+/// Where something is nearer than this at the end of a period, the judge also looks at instants within the period.
+constexpr double kNear_m = 0.15;      // more than the arm and an obstacle can close in one period
+constexpr double kSelfNear_m = 0.05;  // the same for two links
+
+/// Number of these instants, the end of the period included: with 5 those that are 0, 1/5, ..., 4/5 of a period before
+/// its end.
+int contact_checks(const Scene& scene);
+
+/// An instant at which the arm and an obstacle overlap.
+struct Contact {
+  int period;   ///< at whose end the instant is, or within which
+  double back;  ///< how long before that end, in periods; less than 1
+  double clearance_m;
+};
+
 /// Measures one trial from the true motion of the arm and of the spheres.
 class Judge {
  public:
@@ -24,10 +39,14 @@ class Judge {
   /// To be called after the last period.
   TrialMetrics metrics() const;
 
+  /// All instants with contact at which the judge looked, by periods.
+  const std::vector<Contact>& contacts() const { return contacts_; }
+
  private:
-  /// Least clearances to obstacles and between links at this period and, where one of them is small, at instants
-  /// between the last period and this one.
-  void measure_clearance(const ArmPose& arm, const Joints& q_rad, double t_s);
+  /// Least clearances to obstacles and between links at period k and, where one of them is small, at instants between
+  /// the last period and this one.
+  void measure_clearance(const ArmPose& arm, const Joints& q_rad, int k);
+  void count_clearance(const Contact& instant);
   void measure_mover(const ArmPose& arm, double t_s);
   /// Least clearance between links, as far as links are near each other.
   double measure_self_clearance(const ArmPose& arm);
@@ -43,6 +62,7 @@ class Judge {
   const Scene& scene_;
   Limits limits_;
   TrialMetrics metrics_;
+  std::vector<Contact> contacts_;
   Smoothness smoothness_;
   Matrix3 start_rotation_;
   Joints last_rad_;

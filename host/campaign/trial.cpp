@@ -76,7 +76,7 @@ TrialMetrics run_trial(const Scene& scene, TrialController& controller) {
     loop.apply(output);
   }
   TrialMetrics metrics = judge.metrics();
-  if (scene.family->has_people()) people_judge.complete(metrics);
+  if (scene.family->has_people()) people_judge.complete(metrics, judge.contacts());
   return metrics;
 }
 

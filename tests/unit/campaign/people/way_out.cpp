@@ -12,9 +12,10 @@ using sidestep::test::ConstantController;
 
 namespace {
 
-/// The LWA3 stretched upward, and one capsule along y that comes from x = 1.5 m and stops at the arm's axis or, if
-/// wide, a wall of such capsules as high as the arm reaches; t = 0 to 4 s.
-Scene approached(double arrival_s, bool wide) {
+/// The LWA3 stretched upward, and one capsule along y that is at x_m(t) or, if wide, a wall of such capsules as high as
+/// the arm reaches; t = 0 to 4 s.
+template <typename Path>
+Scene met_by(const Path& x_m, bool wide) {
   Scene scene{};
   scene.family = &family_named("walk-by");
   scene.arm = &lwa3_arm();
@@ -23,13 +24,22 @@ Scene approached(double arrival_s, bool wide) {
   for (double z_m = wide ? 0.6 : 0.9; z_m <= (wide ? 2.2 : 0.9); z_m += 0.1) {
     std::vector<CapsulePath::Ends> samples;
     for (int k = 0; k <= 400; ++k) {
-      const double x_m = 1.5 * std::max(0.0, 1.0 - k * kPeriod_s / arrival_s);
-      const double half_m = wide ? 3.0 : 0.2;
-      samples.push_back({{x_m, -half_m, z_m}, {x_m, half_m, z_m}});
+      const double half_m = wide ? 3.0 : 0.2, x = x_m(k * kPeriod_s);
+      samples.push_back({{x, -half_m, z_m}, {x, half_m, z_m}});
     }
     scene.capsules.emplace_back(0.05, kPeriod_s, samples);
   }
   return scene;
+}
+
+/// It comes from x = 1.5 m and stops at the arm's axis.
+Scene approached(double arrival_s, bool wide) {
+  return met_by([=](double t_s) { return 1.5 * std::max(0.0, 1.0 - t_s / arrival_s); }, wide);
+}
+
+/// It passes the arm's axis from positive x on in the middle of a period, at whose beginning and end it is 25 mm clear.
+Scene passed(int period, bool wide) {
+  return met_by([=](double t_s) { return 25.0 * ((period - 0.5) * kPeriod_s - t_s); }, wide);
 }
 
 ArmInstant at_rest(const Scene& scene, int period) {
@@ -82,6 +92,16 @@ void an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest(void**) {
   check(moved.way_out == 1.0 && moved.late_way_out == 1.0, "the arm could have stopped");
 }
 
+void what_passes_between_two_periods_is_judged_when_it_passes(void**) {
+  ConstantController idle(Joints::Zero(7)), toward(0.3 * Joints::Unit(7, 1));
+  const TrialMetrics rested = run_trial(passed(40, true), idle);
+  check(rested.clearance_m < -0.07, "%g m", rested.clearance_m);
+  check(rested.closing_mps == 0.0, "%g m/s", rested.closing_mps);
+  const TrialMetrics moved = run_trial(passed(20, false), toward);
+  check(moved.clearance_m < -0.07, "%g m", moved.clearance_m);
+  check_near(moved.closing_mps, 0.3 * 0.6, 0.02);  // the lever of the second joint to the contact
+}
+
 }  // namespace
 
 int main() {
@@ -92,6 +112,7 @@ int main() {
       cmocka_unit_test(it_depends_on_the_velocity_of_the_arm),
       cmocka_unit_test(a_wall_that_stops_at_the_arm_can_be_fled_only_backward),
       cmocka_unit_test(an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest),
+      cmocka_unit_test(what_passes_between_two_periods_is_judged_when_it_passes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
