@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware/model/nearest_points.h"
+#include "host/campaign/judge.h"
 #include "host/campaign/random.h"
 #include "host/campaign/stopping.h"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr int kMostMotions = 400;
 constexpr int kStride = 2;  // periods a step
 constexpr double kStep_s = kStride * kPeriod_s;
-constexpr double kClearance_m = 0.01, kSelfClearance_m = 0.02;
+constexpr double kClearance_m = 0.01;
 constexpr double kReaches_rad[] = {0.4, 1.0, 2.0, 6.0};
 
 /// A motion of the arm from the first instant of the search, an instant each step.
@@ -25,6 +26,14 @@ using Motion = std::vector<ArmInstant>;
 struct Branch {
   std::shared_ptr<const Motion> motion;
   size_t index;
+};
+
+/// By the judge's surfaces; exact where something is near.
+struct Clearances {
+  double persons_m, links_m;
+
+  bool touched() const { return persons_m < 0.0 || links_m <= 0.0; }
+  bool near() const { return persons_m < kNear_m || links_m < kSelfNear_m; }
 };
 
 class Search {
@@ -112,16 +121,24 @@ class Search {
     });
   }
 
-  /// Whether no contact occurs, by the judge's surfaces, in every period of the motion.
+  /// Clearances `periods` after an instant of a motion, on the way to the next one.
+  Clearances clearances(const ArmInstant& from, const ArmInstant& to, double periods) const {
+    const ArmPose pose = scene_.arm->pose(from.q_rad + periods / kStride * (to.q_rad - from.q_rad));
+    return {clearance_at(scene_, pose, (from.period + periods) * kPeriod_s, kNear_m),
+            scene_.arm->self_clearance(pose, kSelfNear_m)};
+  }
+
+  /// Whether no contact occurs, by the judge's surfaces, at the instants at which the judge looks.
   bool judged_clear(const Motion& motion) const {
+    const int checks = contact_checks(scene_);
     for (size_t step = 1; step < motion.size(); ++step) {
-      for (int part = 1; part <= kStride; ++part) {
-        const double share = static_cast<double>(part) / kStride;
-        const ArmPose pose =
-            scene_.arm->pose(motion[step - 1].q_rad + share * (motion[step].q_rad - motion[step - 1].q_rad));
-        const double t_s = (motion[step - 1].period + part) * kPeriod_s;
-        if (clearance_at(scene_, pose, t_s, 0.0) < 0.0) return false;
-        if (scene_.arm->self_clearance(pose, kSelfClearance_m) <= 0.0) return false;
+      for (int period = 1; period <= kStride; ++period) {
+        const Clearances end = clearances(motion[step - 1], motion[step], period);
+        if (end.touched()) return false;
+        for (int i = 1; i < checks && end.near(); ++i) {
+          const double back = static_cast<double>(i) / checks;
+          if (clearances(motion[step - 1], motion[step], period - back).touched()) return false;
+        }
       }
     }
     return true;
@@ -143,8 +160,14 @@ bool has_way_out(const Scene& scene, const ArmInstant& from) {
 
 double clearance_at_rest(const Scene& scene) {
   const ArmPose pose = scene.arm->pose(scene.start_rad);
+  const int checks = contact_checks(scene);
   double least_m = sim::kNothingNear;
-  for (int k = 0; k <= scene.periods; ++k) least_m = clearance_at(scene, pose, k * kPeriod_s, least_m);
+  for (int k = 0; k <= scene.periods; ++k) {
+    const double t_s = k * kPeriod_s, clearance_m = clearance_at(scene, pose, t_s, std::max(kNear_m, least_m));
+    least_m = std::min(least_m, clearance_m);
+    for (int i = 1; i < checks && clearance_m < kNear_m; ++i)
+      least_m = clearance_at(scene, pose, t_s - static_cast<double>(i) / checks * kPeriod_s, least_m);
+  }
   return least_m;
 }
 

@@ -97,9 +97,20 @@ void what_passes_between_two_periods_is_judged_when_it_passes(void**) {
   const TrialMetrics rested = run_trial(passed(40, true), idle);
   check(rested.clearance_m < -0.07, "%g m", rested.clearance_m);
   check(rested.closing_mps == 0.0, "%g m/s", rested.closing_mps);
+  check(rested.late_way_out == 0.0, "a way out after the wall has passed");
   const TrialMetrics moved = run_trial(passed(20, false), toward);
   check(moved.clearance_m < -0.07, "%g m", moved.clearance_m);
   check_near(moved.closing_mps, 0.3 * 0.6, 0.02);  // the lever of the second joint to the contact
+}
+
+void an_arm_at_rest_and_ways_out_are_judged_at_the_instants_of_a_trial(void**) {
+  ConstantController idle(Joints::Zero(7));
+  for (const Scene& scene : {passed(20, true), passed(20, false), approached(3.0, false)}) {
+    const TrialMetrics rested = run_trial(scene, idle);
+    check(rested.clearance_m < -0.07, "%g m", rested.clearance_m);
+    check_near(clearance_at_rest(scene), rested.clearance_m, 0.0);
+  }
+  assert_false(has_way_out(passed(20, true), at_rest(passed(20, true), 0)));
 }
 
 }  // namespace
@@ -113,6 +124,7 @@ int main() {
       cmocka_unit_test(a_wall_that_stops_at_the_arm_can_be_fled_only_backward),
       cmocka_unit_test(an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest),
       cmocka_unit_test(what_passes_between_two_periods_is_judged_when_it_passes),
+      cmocka_unit_test(an_arm_at_rest_and_ways_out_are_judged_at_the_instants_of_a_trial),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
