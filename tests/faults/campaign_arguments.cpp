@@ -1,14 +1,22 @@
 #include <sys/wait.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <thread>
 
 #include "host/campaign/csv.h"
 #include "tests/support/check.h"
+#include "tests/support/process.h"
 #include "tests/support/scratch.h"
 
 using namespace sidestep::campaign;
+using sidestep::test::kill_processes;
 using sidestep::test::message_of;
 using sidestep::test::one_line_with;
+using sidestep::test::Process;
 using sidestep::test::replaced;
 using sidestep::test::scratch_file;
 using sidestep::test::scratch_folder;
@@ -25,6 +33,30 @@ Answer campaign(const std::string& arguments) {
   const std::string out = scratch_folder() + "/out", err = scratch_folder() + "/err";
   const int status = std::system(("build/campaign " + arguments + " >" + out + " 2>" + err).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+}
+
+/// Arguments of a program that runs beside the test.
+std::vector<std::string> beside(const std::string& arguments) {
+  std::vector<std::string> words{"build/campaign"};
+  std::istringstream stream(arguments);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+constexpr double kLimit_s = 120.0;  // also for a busy machine
+
+template <typename Condition>
+void wait_for(const char* what, const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kLimit_s);
+  while (!condition()) {
+    check(std::chrono::steady_clock::now() < end, "%s: not after %g s", what, kLimit_s);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+/// Number of rows in the file of a run; 0 before there is one.
+size_t rows_in(const std::string& file) {
+  return std::filesystem::exists(file) ? read_interrupted_csv(file).size() : 0;
 }
 
 void bad_arguments_end_with_code_2(void**) {
@@ -102,12 +134,12 @@ void merging_a_scene_twice_is_refused(void**) {
 }
 
 void an_interrupted_run_keeps_its_finished_rows(void**) {
-  const std::string file = scratch_folder() + "/cut.csv", err = scratch_folder() + "/cut.err";
-  const std::string run = "--family moving --count 100000 --law plain --quiet --csv " + file;
-  const int status =
-      std::system(("timeout --preserve-status -s INT 2 build/campaign " + run + " >/dev/null 2>" + err).c_str());
-  check(WIFEXITED(status) && WEXITSTATUS(status) == 130, "status %d", status);
-  check(text_of(err).find("interrupted after") != std::string::npos, "%s", text_of(err).c_str());
+  const std::string file = scratch_folder() + "/cut.csv";
+  Process run(beside("--family moving --count 100000 --law plain --quiet --csv " + file));
+  wait_for("a row", [&] { return rows_in(file) > 0; });
+  run.signal(SIGINT);
+  check(run.wait(kLimit_s) == 130, "code %d", run.wait(0.0));
+  check(run.output().find("interrupted after") != std::string::npos, "%s", run.output().c_str());
   const std::vector<Row> rows = read_csv(file);
   check(!rows.empty() && rows.size() < 100'000, "%zu rows", rows.size());
 }
@@ -116,14 +148,11 @@ void a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one(void**) {
   const std::string file = scratch_folder() + "/killed.csv";
   const std::string run = "--family moving --count 300 --law plain --quiet --no-cpu --jobs 1";
   const Answer whole = campaign(run);
-  int rows = 0;
-  for (int attempt = 0; attempt < 50 && rows < 5; ++attempt) {  // until the killed run had time for some rows
-    const std::string kill = "timeout -s KILL " + std::to_string(0.3 * (attempt + 1));
-    check(std::system((kill + " build/campaign " + run + " --csv " + file + " >/dev/null 2>&1").c_str()) != 0,
-          "the run ended before it was killed");
-    rows = static_cast<int>(read_interrupted_csv(file).size());
-  }
-  check(rows >= 5 && rows < 300, "%d rows", rows);
+  Process killed(beside(run + " --csv " + file));
+  wait_for("rows", [&] { return rows_in(file) >= 5; });
+  killed.signal(SIGKILL);
+  check(killed.wait(kLimit_s) == 128 + SIGKILL, "the run ended before it was killed");
+  check(rows_in(file) < 300, "%zu rows", rows_in(file));
   const Answer resumed = campaign(run + " --resume --csv " + file);
   check(resumed.code == 0 && resumed.out == whole.out, "%s\n%s", resumed.out.c_str(), resumed.err.c_str());
   const Answer merged = campaign("merge --no-cpu " + file);
@@ -158,14 +187,13 @@ void a_finding_of_a_search_runs_again_from_its_line(void**) {
 }
 
 void an_interrupted_search_prints_its_table(void**) {
-  const std::string dir = scratch_folder();
-  const int status = std::system(("timeout --preserve-status -s INT 2 build/campaign --search rest --count 1000000 "
-                                  "--quiet >" +
-                                  dir + "/out 2>" + dir + "/err")
-                                     .c_str());
-  check(WIFEXITED(status) && WEXITSTATUS(status) == 130, "status %d", status);
-  check(text_of(dir + "/err").find("interrupted after") != std::string::npos, "%s", text_of(dir + "/err").c_str());
-  check(text_of(dir + "/out").find("rest     sidestep") != std::string::npos, "%s", text_of(dir + "/out").c_str());
+  const std::string file = scratch_folder() + "/search.csv";
+  Process search(beside("--search rest --count 1000000 --quiet --csv " + file));
+  wait_for("the search", [&] { return std::filesystem::exists(file); });
+  search.signal(SIGINT);
+  check(search.wait(kLimit_s) == 130, "code %d", search.wait(0.0));
+  for (const char* part : {"interrupted after", "rest     sidestep"})
+    check(search.output().find(part) != std::string::npos, "%s", search.output().c_str());
 }
 
 void hostile_files_are_refused_with_one_line(void**) {
@@ -205,11 +233,11 @@ int main() {
       cmocka_unit_test(a_valid_run_ends_with_code_0),
       cmocka_unit_test(shards_merge_to_the_table_of_one_run),
       cmocka_unit_test(merging_a_scene_twice_is_refused),
-      cmocka_unit_test(an_interrupted_run_keeps_its_finished_rows),
-      cmocka_unit_test(a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one),
+      cmocka_unit_test_teardown(an_interrupted_run_keeps_its_finished_rows, kill_processes),
+      cmocka_unit_test_teardown(a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one, kill_processes),
       cmocka_unit_test(a_run_with_other_arguments_is_not_resumed),
       cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
-      cmocka_unit_test(an_interrupted_search_prints_its_table),
+      cmocka_unit_test_teardown(an_interrupted_search_prints_its_table, kill_processes),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
