@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -27,6 +28,21 @@ using namespace sidestep::campaign;
 enum ExitCode { kDone = 0, kBadInput = 2, kInterruptedBySignal = 130 };
 
 std::atomic<bool> interrupted{false};
+std::atomic<double> interrupted_s{0.0};
+
+/// The first signal lets the trials in progress end, a later one ends the program at once.
+void interrupt(int signal) {
+  constexpr double kSame_s = 0.3;  // `timeout` sends its signal twice, to the program and to its group
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const double now_s = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  if (!interrupted.exchange(true)) {
+    interrupted_s = now_s;
+  } else if (now_s - interrupted_s > kSame_s) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
 
 struct Options {
   std::string family = "all", law = "sidestep", config, urdf, base, tip, shard = "1/1", csv, exported_scene, output,
@@ -104,7 +120,10 @@ void declare(CommandLine& app, Options& options) {
   app.add_subcommand("merge", "print the tables of all trials in files of --csv")
       .add_option("files", options.merge, "CSV files")
       .required();
-  app.footer("Exit code: 0 done, 2 bad arguments or files, 130 interrupted.");
+  app.footer(
+      "Exit code: 0 done, 2 bad arguments or files, 130 interrupted: the first Ctrl-C lets the scenes in progress end, "
+      "a "
+      "second one does not.");
 }
 
 struct Shard {
@@ -297,8 +316,8 @@ int main(int argc, char** argv) {
   Options options;
   declare(app, options);
   if (const auto exit_code = app.parse(argc, argv)) return *exit_code;
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
   try {
     return act(options);
   } catch (const std::exception& error) {

@@ -196,6 +196,26 @@ void an_interrupted_search_prints_its_table(void**) {
     check(search.output().find(part) != std::string::npos, "%s", search.output().c_str());
 }
 
+void a_second_signal_ends_a_run_at_once(void**) {
+  const std::string file = scratch_folder() + "/twice.csv";
+  Process run(beside("--family two-people --count 2 --jobs 1 --quiet --csv " + file));
+  wait_for("the run", [&] { return std::filesystem::exists(file); });
+  run.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  run.signal(SIGTERM);
+  check(run.wait(kLimit_s) == 128 + SIGTERM, "code %d: %s", run.wait(0.0), run.output().c_str());
+}
+
+/// As `timeout` sends it, to the program and to its group.
+void a_signal_that_is_sent_twice_at_once_counts_once(void**) {
+  const std::string file = scratch_folder() + "/group.csv";
+  Process run(beside("--family two-people --count 1000 --jobs 1 --quiet --csv " + file));
+  wait_for("the run", [&] { return std::filesystem::exists(file); });
+  run.signal(SIGTERM);
+  run.signal(SIGTERM);
+  check(run.wait(kLimit_s) == 130, "code %d: %s", run.wait(0.0), run.output().c_str());
+}
+
 void hostile_files_are_refused_with_one_line(void**) {
   const std::string file = scratch_folder() + "/whole.csv";
   write_csv(file, {{&family_named("moving"), "paper", 5, {}}});
@@ -238,6 +258,8 @@ int main() {
       cmocka_unit_test(a_run_with_other_arguments_is_not_resumed),
       cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
       cmocka_unit_test_teardown(an_interrupted_search_prints_its_table, kill_processes),
+      cmocka_unit_test_teardown(a_second_signal_ends_a_run_at_once, kill_processes),
+      cmocka_unit_test_teardown(a_signal_that_is_sent_twice_at_once_counts_once, kill_processes),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
