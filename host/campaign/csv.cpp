@@ -167,7 +167,12 @@ std::vector<Row> read_csv(const std::string& file) {
   std::ifstream stream(file);
   if (!stream || stream.peek() == std::ifstream::traits_type::eof())
     throw std::runtime_error(fmt::format("{}: cannot be read", file));
-  return read_rows(stream, file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream lines(text);
+  std::vector<Row> rows = read_rows(lines, file);
+  if (text.back() != '\n')
+    throw std::runtime_error(fmt::format("{}: the last line has no end, it may be cut short", file));
+  return rows;
 }
 
 std::vector<Row> read_interrupted_csv(const std::string& file) {

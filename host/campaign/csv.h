@@ -52,9 +52,10 @@ class CsvWriter {
 /// With the columns that the rows' families need.
 void write_csv(const std::string& file, const std::vector<Row>& rows);
 
+/// A last line without end, whose number may be cut short, is an error.
 std::vector<Row> read_csv(const std::string& file);
 
-/// The same of a file whose writer may have been killed: a last line without end is ignored.
+/// The same of a file whose writer may have been killed: such a line is ignored.
 std::vector<Row> read_interrupted_csv(const std::string& file);
 
 /// Whether two rows of the same trial are equal, CPU times excepted.

@@ -236,6 +236,7 @@ void hostile_files_are_refused_with_one_line(void**) {
                                 replaced(whole, ",5,", ",5,1e999,"),
                                 whole.substr(0, whole.size() / 2),
                                 whole.substr(0, whole.size() - row.size() / 2),
+                                whole.substr(0, whole.size() - 1),
                                 whole + "\n"};
   for (const std::string& text : broken) {
     const std::string bad = scratch_file("bad.csv", text);
