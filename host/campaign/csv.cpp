@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -140,15 +141,26 @@ auto key(const Row& row) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(const std::string& file, MoreColumns more) : file_(file), more_(more), stream_(file) {
+CsvWriter::CsvWriter(const std::string& file, MoreColumns more, const std::vector<Row>& rows)
+    : file_(file), more_(more) {
+  const bool replaces = std::filesystem::is_regular_file(file);  // else it is new, or such as /dev/stdout
+  const std::string replaced = replaces ? std::filesystem::canonical(file).string() : file;
+  const std::string written = replaces ? replaced + ".new" : replaced;
+  stream_.open(written);
   stream_ << header(more) << '\n';
+  for (const Row& row : rows) write(row);
   flush();
+  if (replaces) std::filesystem::rename(written, replaced);
 }
 
 void CsvWriter::add(const Row& row) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  stream_ << to_line(row, columns_of(more_)) << '\n';
+  write(row);
   flush();
+}
+
+void CsvWriter::write(const Row& row) {
+  stream_ << to_line(row, columns_of(more_)) << '\n';
 }
 
 void CsvWriter::flush() {
@@ -159,8 +171,7 @@ void CsvWriter::flush() {
 void write_csv(const std::string& file, const std::vector<Row>& rows) {
   MoreColumns more;
   for (const Row& row : rows) more.include(*row.family);
-  CsvWriter writer(file, more);
-  for (const Row& row : rows) writer.add(row);
+  CsvWriter(file, more, rows);
 }
 
 std::vector<Row> read_csv(const std::string& file) {

@@ -34,13 +34,14 @@ struct MoreColumns {
 /// std::runtime_error, one line with the file.
 class CsvWriter {
  public:
-  /// Replaces the file by one without rows.
-  CsvWriter(const std::string& file, MoreColumns more);
+  /// Replaces the file by one with these rows, at once: until they are all written, beside it, it stays as it is.
+  CsvWriter(const std::string& file, MoreColumns more, const std::vector<Row>& rows = {});
 
   /// May be called from several threads.
   void add(const Row& row);
 
  private:
+  void write(const Row& row);
   void flush();
 
   std::string file_;

@@ -182,8 +182,7 @@ std::vector<Row> run_and_record(const std::vector<Task>& tasks, const TestedCont
   auto [rows, rest] = options.resume ? resume(options.csv, tasks, tested) : Resumed{{}, tasks};
   MoreColumns more_columns;
   for (const Task& task : tasks) more_columns.include(*task.family);
-  CsvWriter writer(options.csv, more_columns);  // fails before the trials if the file cannot be written
-  for (const Row& row : rows) writer.add(row);
+  CsvWriter writer(options.csv, more_columns, rows);  // fails before the trials if the file cannot be written
   const std::vector<Row> more =
       run(rest, tested, options.jobs, options.quiet, interrupted, [&writer](const Row& row) { writer.add(row); });
   rows.insert(rows.end(), more.begin(), more.end());

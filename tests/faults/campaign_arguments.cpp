@@ -159,6 +159,18 @@ void a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one(void**) {
   check(merged.out == whole.out, "%s", merged.out.c_str());
 }
 
+/// The disk is full, as it were: files may have 2 kB.
+void a_resumed_run_that_cannot_write_keeps_the_rows(void**) {
+  const std::string file = scratch_folder() + "/full.csv", run = "--family moving --law plain --quiet --jobs 1 --csv ";
+  campaign(run + file + " --count 20");
+  const std::string before = text_of(file);
+  check(before.size() > 4096, "%zu bytes", before.size());
+  const std::string resume = "build/campaign " + run + file + " --count 30 --resume >/dev/null 2>&1";
+  check(std::system(("ulimit -f 4; " + resume).c_str()) != 0, "the limit has no effect");
+  check(text_of(file) == before, "%zu bytes are left of %zu", text_of(file).size(), before.size());
+  check(std::system(resume.c_str()) == 0 && rows_in(file) == 30, "%zu rows", rows_in(file));
+}
+
 void a_run_with_other_arguments_is_not_resumed(void**) {
   const std::string file = scratch_folder() + "/first.csv", run = " --count 2 --quiet --csv " + file;
   campaign("--family moving --law plain" + run);
@@ -256,6 +268,7 @@ int main() {
       cmocka_unit_test(merging_a_scene_twice_is_refused),
       cmocka_unit_test_teardown(an_interrupted_run_keeps_its_finished_rows, kill_processes),
       cmocka_unit_test_teardown(a_killed_run_is_resumed_and_gives_the_table_of_a_whole_one, kill_processes),
+      cmocka_unit_test(a_resumed_run_that_cannot_write_keeps_the_rows),
       cmocka_unit_test(a_run_with_other_arguments_is_not_resumed),
       cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
       cmocka_unit_test_teardown(an_interrupted_search_prints_its_table, kill_processes),
