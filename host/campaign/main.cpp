@@ -262,8 +262,10 @@ int run_scene(const Options& options) {
   return kDone;
 }
 
+/// When interrupted, only some of the problems that get a mover.
 std::vector<Problem> add_movers(const std::vector<Problem>& problems, const Config& config, const Options& options) {
   std::vector<Problem> crossed = with_movers(problems, config, options.jobs, options.quiet, interrupted);
+  if (interrupted) return crossed;
   if (crossed.empty()) throw std::runtime_error("--mover: no witness was found");
   fmt::print("A ball was added to {} of {} problems; no witness was found for the others.\n", crossed.size(),
              problems.size());
@@ -274,15 +276,19 @@ int play_problems(const Options& options) {
   if (options.law == "plain") throw std::runtime_error("--problems: the law plain ignores obstacles");
   const Config config = config_of(options);
   std::vector<Problem> problems = read_problems(options.problems, config.model.arm);
+  if (!options.csv.empty()) write_problem_csv(options.csv, {});  // fails before the trials
+  const size_t count = problems.size();
   if (options.mover) problems = add_movers(problems, config, options);
-  const std::vector<ProblemResult> results = play(problems, config, options.jobs, options.quiet, interrupted);
-  if (results.size() < problems.size()) {
-    fmt::print(stderr, "campaign: interrupted after {} of {} problems\n", results.size(), problems.size());
+  if (interrupted) {
+    fmt::print(stderr, "campaign: interrupted before the first of {} problems\n", count);
     return kInterruptedBySignal;
   }
-  if (!options.csv.empty()) write_problem_csv(options.csv, problems, results);
-  fmt::print("{}", problem_table(problems, results));
-  return kDone;
+  const std::vector<ProblemResult> results = play(problems, config, options.jobs, options.quiet, interrupted);
+  if (!options.csv.empty()) write_problem_csv(options.csv, results);
+  if (!results.empty()) fmt::print("{}", problem_table(results));
+  if (results.size() == problems.size()) return kDone;
+  fmt::print(stderr, "campaign: interrupted after {} of {} problems\n", results.size(), problems.size());
+  return kInterruptedBySignal;
 }
 
 using Action = int (*)(const Options& options);

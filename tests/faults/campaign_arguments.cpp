@@ -1,5 +1,6 @@
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -208,6 +209,47 @@ void an_interrupted_search_prints_its_table(void**) {
     check(search.output().find(part) != std::string::npos, "%s", search.output().c_str());
 }
 
+/// A folder with copies of a problem, and the options that play them.
+std::string problems(int copies) {
+  const std::filesystem::path folder = scratch_folder() + "/problems/copies";
+  std::filesystem::create_directories(folder);
+  for (int k = 1; k <= copies; ++k)
+    for (const char* kind : {"scene", "request"})
+      std::filesystem::copy_file(std::string("tests/data/problems/under-table/") + kind + "0001.yaml",
+                                 folder / (kind + std::to_string(1000 + k) + ".yaml"),
+                                 std::filesystem::copy_options::overwrite_existing);
+  return "--problems " + folder.string() + " --config firmware/config/panda.yaml --jobs 1";
+}
+
+void problems_are_not_played_if_the_results_cannot_be_written(void**) {
+  const Answer answer = campaign(problems(1) + " --mover --quiet --csv /nowhere/at/all.csv");
+  check(answer.code == 2 && answer.out.empty(), "code %d: %s", answer.code, answer.out.c_str());
+  check(one_line_with(answer.err.substr(0, answer.err.size() - 1), {"/nowhere/at/all.csv"}), "%s", answer.err.c_str());
+}
+
+void interrupted_problems_are_printed_and_written(void**) {
+  const std::string file = scratch_folder() + "/problems.csv";
+  Process play(beside(problems(50) + " --csv " + file));
+  wait_for("a tenth", [&] { return play.output().find("5/50") != std::string::npos; });
+  play.signal(SIGINT);
+  check(play.wait(kLimit_s) == 130, "code %d", play.wait(0.0));
+  for (const char* part : {"interrupted after", "of 50 problems", "copies  ", "All, with 95 % confidence"})
+    check(play.output().find(part) != std::string::npos, "'%s': %s", part, play.output().c_str());
+  const std::string rows = text_of(file);
+  const auto lines = std::count(rows.begin(), rows.end(), '\n');
+  check(lines > 5 && lines < 50 && rows.find("\ncopies,1005,") != std::string::npos, "%s", rows.c_str());
+}
+
+void problems_that_are_interrupted_while_movers_are_searched_end_with_code_130(void**) {
+  const std::string file = scratch_folder() + "/movers.csv";
+  Process play(beside(problems(50) + " --mover --quiet --csv " + file));
+  wait_for("the search", [&] { return std::filesystem::exists(file); });
+  play.signal(SIGINT);
+  check(play.wait(kLimit_s) == 130, "code %d: %s", play.wait(0.0), play.output().c_str());
+  check(one_line_with(play.output().substr(0, play.output().size() - 1), {"interrupted", "of 50 problems"}), "%s",
+        play.output().c_str());
+}
+
 void a_second_signal_ends_a_run_at_once(void**) {
   const std::string file = scratch_folder() + "/twice.csv";
   Process run(beside("--family two-people --count 2 --jobs 1 --quiet --csv " + file));
@@ -272,6 +314,10 @@ int main() {
       cmocka_unit_test(a_run_with_other_arguments_is_not_resumed),
       cmocka_unit_test(a_finding_of_a_search_runs_again_from_its_line),
       cmocka_unit_test_teardown(an_interrupted_search_prints_its_table, kill_processes),
+      cmocka_unit_test(problems_are_not_played_if_the_results_cannot_be_written),
+      cmocka_unit_test_teardown(interrupted_problems_are_printed_and_written, kill_processes),
+      cmocka_unit_test_teardown(problems_that_are_interrupted_while_movers_are_searched_end_with_code_130,
+                                kill_processes),
       cmocka_unit_test_teardown(a_second_signal_ends_a_run_at_once, kill_processes),
       cmocka_unit_test_teardown(a_signal_that_is_sent_twice_at_once_counts_once, kill_processes),
       cmocka_unit_test(hostile_files_are_refused_with_one_line),

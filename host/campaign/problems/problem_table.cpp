@@ -64,30 +64,26 @@ std::string intervals(const Results& results) {
 
 }  // namespace
 
-std::string problem_table(const std::vector<Problem>& problems, const Results& results) {
+std::string problem_table(const Results& results) {
   std::string table = fmt::format("{:24}{:>10}{:>10}{:>10}{:>10}{:>14}{:>14}{:>16}\n", "", "problems", "solved",
                                   "solved", "contact", "clearance", "to mover", "arrival");
   table += fmt::format("{:24}{:>10}{:>10}{:>10}{:>10}{:>14}{:>14}{:>16}\n", "", "", "to 10 mm", "to 5 mm", "",
                        "min, mm", "min, mm", "median, s");
-  for (size_t first = 0; first < problems.size();) {
-    size_t end = first;
-    while (end < problems.size() && problems[end].kind == problems[first].kind) ++end;
-    table += line(problems[first].kind,
-                  Results(results.begin() + static_cast<long>(first), results.begin() + static_cast<long>(end)));
+  for (auto first = results.begin(); first != results.end();) {
+    const auto end = std::find_if(first, results.end(), [&](const ProblemResult& r) { return r.kind != first->kind; });
+    table += line(first->kind, Results(first, end));
     first = end;
   }
   return table + line("all", results) + intervals(results) +
          "Published for the whole set of 7 x 100: VAMP (RRT-Connect) solves 699. cuRobo solves all of its 800.\n";
 }
 
-void write_problem_csv(const std::string& file, const std::vector<Problem>& problems, const Results& results) {
+void write_problem_csv(const std::string& file, const Results& results) {
   std::ofstream stream(file);
   stream << "kind,name,error_m,error_rad,arrival_s,clearance_m,self_clearance_m,mover_clearance_m,guided\n";
-  for (size_t i = 0; i < results.size(); ++i) {
-    const ProblemResult& r = results[i];
-    fmt::print(stream, "{},{},{:.6f},{:.6f},{:.2f},{:.6f},{:.6f},{:.6f},{:.3f}\n", problems[i].kind, problems[i].name,
-               r.error_m, r.error_rad, r.arrival_s, r.clearance_m, r.self_clearance_m, r.mover_clearance_m, r.guided);
-  }
+  for (const ProblemResult& r : results)
+    fmt::print(stream, "{},{},{:.6f},{:.6f},{:.2f},{:.6f},{:.6f},{:.6f},{:.3f}\n", r.kind, r.name, r.error_m,
+               r.error_rad, r.arrival_s, r.clearance_m, r.self_clearance_m, r.mover_clearance_m, r.guided);
   stream.close();
   if (!stream) fail("{}: cannot be written", file);
 }

@@ -4,11 +4,11 @@
 
 namespace sidestep::campaign {
 
-/// A line for each kind of problem and one for all, and below what planners for static scenes report.
-std::string problem_table(const std::vector<Problem>& problems, const std::vector<ProblemResult>& results);
+/// A line for each kind of problem and one for all, and below what planners for static scenes report. At least one
+/// result.
+std::string problem_table(const std::vector<ProblemResult>& results);
 
-/// A row for each problem. Throws std::runtime_error, one line, if the file cannot be written.
-void write_problem_csv(const std::string& file, const std::vector<Problem>& problems,
-                       const std::vector<ProblemResult>& results);
+/// A row for each result. Throws std::runtime_error, one line, if the file cannot be written.
+void write_problem_csv(const std::string& file, const std::vector<ProblemResult>& results);
 
 }  // namespace sidestep::campaign

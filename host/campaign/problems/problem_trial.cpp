@@ -40,6 +40,8 @@ class ProblemTrial {
   }
 
   ProblemResult run() {
+    result_.kind = problem_.kind;
+    result_.name = problem_.name;
     result_.clearance_m = sim::kNothingNear;
     result_.self_clearance_m = kNear_m;
     while (!cycle().ready)

@@ -12,6 +12,7 @@ constexpr double kProblemDuration_s = 10.0;
 
 /// How the controller did on a problem. The goal is the pose that the tool has in the goal posture.
 struct ProblemResult {
+  std::string kind, name;                 ///< of the problem
   double error_m = 0.0, error_rad = 0.0;  ///< of the tool at the end
   double arrival_s = 0.0;                 ///< since when the tool has been within 10 mm and 0.05 rad; the end: not yet
   double clearance_m = 0.0;               ///< the least one to the objects, by FCL on the URDF's shapes
@@ -25,7 +26,8 @@ struct ProblemResult {
 
 /// Plays the problems for kProblemDuration_s each, from the first cycle that tracks, with an ideal plant. The objects
 /// are reported to the controller as obstacles at rest, in every cycle, the mover with its velocity. The results are in
-/// the order of the problems, fewer when `stop` became true. Throws std::runtime_error, one line.
+/// the order of the problems; when `stop` became true, those of the problems that were finished. Throws
+/// std::runtime_error, one line.
 std::vector<ProblemResult> play(const std::vector<Problem>& problems, const Config& config, int jobs, bool quiet,
                                 const std::atomic<bool>& stop);
 
