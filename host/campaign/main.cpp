@@ -291,25 +291,41 @@ int play_problems(const Options& options) {
   return kInterruptedBySignal;
 }
 
-using Action = int (*)(const Options& options);
+struct Action {
+  int (*run)(const Options& options);
+  std::string name;                  ///< in messages
+  std::vector<std::string> options;  ///< those that have an effect on it
+};
 
 Action action_of(const Options& options) {
-  if (!options.problems.empty()) return play_problems;
-  if (!options.merge.empty()) return merge;
-  if (!options.search.empty()) return run_search;
-  if (!options.scene.empty()) return run_scene;
-  return options.exported_scene.empty() ? run_trials : write_exported_scene;
+  if (!options.problems.empty())
+    return {play_problems,
+            "--problems",
+            {"--problems", "--mover", "--law", "--config", "--urdf", "--base", "--tip", "--csv", "--jobs", "--quiet"}};
+  if (!options.merge.empty()) return {merge, "merge", {"--csv", "--smoothness", "--no-cpu"}};
+  if (!options.search.empty())
+    return {run_search,
+            "--search",
+            {"--search", "--obstacles", "--fastest", "--law", "--config", "--urdf", "--base", "--tip", "--count",
+             "--seed", "--shard", "--csv", "--jobs", "--quiet"}};
+  if (!options.scene.empty())
+    return {run_scene, "--scene", {"--scene", "--law", "--config", "--urdf", "--base", "--tip"}};
+  if (!options.exported_scene.empty())
+    return {write_exported_scene, "--replay", {"--replay", "--output", "--config", "--urdf", "--base", "--tip"}};
+  return {run_trials,
+          "the trials of --family",
+          {"--family", "--count", "--seed", "--law", "--config", "--urdf", "--base", "--tip", "--no-velocities",
+           "--ahead", "--decoys", "--shard", "--csv", "--resume", "--jobs", "--quiet", "--smoothness", "--no-cpu"}};
 }
 
-int act(const Options& options) {
-  const Action action = action_of(options);
-  if (options.mover && action != play_problems) throw std::runtime_error("--mover: --problems is missing");
-  if (options.no_velocities && action != run_trials)
-    throw std::runtime_error("--no-velocities: only for the trials of --family");
-  if (options.ahead_s > 0.0 && action != run_trials)
-    throw std::runtime_error("--ahead: only for the trials of --family");
-  if (options.decoys > 0 && action != run_trials) throw std::runtime_error("--decoys: only for dodges");
-  return action(options);
+/// Throws std::runtime_error if one of the arguments is an option that the action would ignore.
+void check_effect(const Action& action, const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const bool has_effect = std::find(action.options.begin(), action.options.end(), name) != action.options.end();
+    if (name.rfind("--", 0) == 0 && name != "--" && !has_effect)
+      throw std::runtime_error(fmt::format("{}: has no effect with {}", name, action.name));
+  }
 }
 
 }  // namespace
@@ -324,7 +340,9 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   try {
-    return act(options);
+    const Action action = action_of(options);
+    check_effect(action, {argv + 1, argv + argc});
+    return action.run(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "campaign: {}\n", error.what());
     return kBadInput;

@@ -98,6 +98,16 @@ void bad_arguments_end_with_code_2(void**) {
                                 "--search rest --count 1 --decoys 1",
                                 "--scene nowhere.yaml",
                                 "--scene firmware/config/lwa3.yaml",
+                                "--family moving --count 1 --law plain --mover",
+                                "--family moving --count 1 --law plain --obstacles 3",
+                                "--family moving --count 1 --law plain --output x.yaml",
+                                "--search rest --count 1 --resume",
+                                "--search rest --count 1 --smoothness",
+                                "--search rest --count 1 --scene nowhere.yaml",
+                                "--problems tests/data/problems --resume",
+                                "--problems tests/data/problems --shard 1/2",
+                                "--replay moving:1 --csv x.csv",
+                                "--replay moving:1 --jobs=1",
                                 "--nonsense",
                                 "merge",
                                 "merge /nowhere/at/all.csv",
@@ -106,6 +116,29 @@ void bad_arguments_end_with_code_2(void**) {
     check(answer.code == 2, "%s: code %d", arguments, answer.code);
     check(answer.out.empty() && !answer.err.empty(), "%s: out '%s', err '%s'", arguments, answer.out.c_str(),
           answer.err.c_str());
+  }
+}
+
+void options_without_effect_are_refused_before_anything_is_written(void**) {
+  const std::string file = scratch_file("kept.csv", "findings of many hours\n");
+  const std::string rows = scratch_folder() + "/rows.csv";
+  campaign("--family moving --count 1 --law plain --quiet --csv " + rows);
+  const struct {
+    std::string arguments, option;
+  } cases[] = {
+      {"--search rest --count 1 --csv " + file + " --resume", "--resume"},
+      {"--search rest --count 1 --csv " + file + " --family=moving", "--family"},
+      {"--problems tests/data/problems --config firmware/config/panda.yaml --csv " + file + " --resume", "--resume"},
+      {"--problems tests/data/problems --config firmware/config/panda.yaml --csv " + file + " --shard 1/1", "--shard"},
+      {"merge --csv " + file + " --jobs 1 " + rows, "--jobs"},
+      {"merge --csv " + file + " --resume " + rows, "--resume"},
+  };
+  for (const auto& one : cases) {
+    const Answer answer = campaign(one.arguments);
+    check(answer.code == 2 && answer.out.empty(), "%s: code %d", one.arguments.c_str(), answer.code);
+    check(one_line_with(answer.err.substr(0, answer.err.size() - 1), {one.option + ": has no effect with "}), "%s: %s",
+          one.arguments.c_str(), answer.err.c_str());
+    check(text_of(file) == "findings of many hours\n", "%s: the file was changed", one.arguments.c_str());
   }
 }
 
@@ -305,6 +338,7 @@ void hostile_files_are_refused_with_one_line(void**) {
 int main() {
   const CMUnitTest tests[] = {
       cmocka_unit_test(bad_arguments_end_with_code_2),
+      cmocka_unit_test(options_without_effect_are_refused_before_anything_is_written),
       cmocka_unit_test(a_valid_run_ends_with_code_0),
       cmocka_unit_test(shards_merge_to_the_table_of_one_run),
       cmocka_unit_test(merging_a_scene_twice_is_refused),
