@@ -121,9 +121,9 @@ void declare(CommandLine& app, Options& options) {
       .add_option("files", options.merge, "CSV files")
       .required();
   app.footer(
-      "Exit code: 0 done, 2 bad arguments or files, 130 interrupted: the first Ctrl-C lets the scenes in progress end, "
-      "a "
-      "second one does not.");
+      "Exit code: 0 done, 2 bad arguments or files, 130 interrupted. Ctrl-C lets the scenes in progress end, a second "
+      "one "
+      "does not.");
 }
 
 struct Shard {
@@ -291,41 +291,28 @@ int play_problems(const Options& options) {
   return kInterruptedBySignal;
 }
 
-struct Action {
-  int (*run)(const Options& options);
-  std::string name;                  ///< in messages
-  std::vector<std::string> options;  ///< those that have an effect on it
-};
+using Action = int (*)(const Options& options);
 
 Action action_of(const Options& options) {
-  if (!options.problems.empty())
-    return {play_problems,
-            "--problems",
-            {"--problems", "--mover", "--law", "--config", "--urdf", "--base", "--tip", "--csv", "--jobs", "--quiet"}};
-  if (!options.merge.empty()) return {merge, "merge", {"--csv", "--smoothness", "--no-cpu"}};
-  if (!options.search.empty())
-    return {run_search,
-            "--search",
-            {"--search", "--obstacles", "--fastest", "--law", "--config", "--urdf", "--base", "--tip", "--count",
-             "--seed", "--shard", "--csv", "--jobs", "--quiet"}};
-  if (!options.scene.empty())
-    return {run_scene, "--scene", {"--scene", "--law", "--config", "--urdf", "--base", "--tip"}};
-  if (!options.exported_scene.empty())
-    return {write_exported_scene, "--replay", {"--replay", "--output", "--config", "--urdf", "--base", "--tip"}};
-  return {run_trials,
-          "the trials of --family",
-          {"--family", "--count", "--seed", "--law", "--config", "--urdf", "--base", "--tip", "--no-velocities",
-           "--ahead", "--decoys", "--shard", "--csv", "--resume", "--jobs", "--quiet", "--smoothness", "--no-cpu"}};
+  if (!options.problems.empty()) return play_problems;
+  if (!options.merge.empty()) return merge;
+  if (!options.search.empty()) return run_search;
+  if (!options.scene.empty()) return run_scene;
+  return options.exported_scene.empty() ? run_trials : write_exported_scene;
 }
 
-/// Throws std::runtime_error if one of the arguments is an option that the action would ignore.
-void check_effect(const Action& action, const std::vector<std::string>& arguments) {
-  for (const std::string& argument : arguments) {
-    const std::string name = argument.substr(0, argument.find('='));
-    const bool has_effect = std::find(action.options.begin(), action.options.end(), name) != action.options.end();
-    if (name.rfind("--", 0) == 0 && name != "--" && !has_effect)
-      throw std::runtime_error(fmt::format("{}: has no effect with {}", name, action.name));
-  }
+/// Options that ask for another result than the action gives are refused.
+int act(const Options& options) {
+  const Action action = action_of(options);
+  const bool runs_trials = action == run_trials;
+  const std::pair<bool, const char*> misplaced[] = {{options.mover && action != play_problems, "--mover"},
+                                                    {options.no_velocities && !runs_trials, "--no-velocities"},
+                                                    {options.ahead_s > 0.0 && !runs_trials, "--ahead"},
+                                                    {options.decoys > 0 && !runs_trials, "--decoys"},
+                                                    {options.resume && !runs_trials, "--resume"}};
+  for (const auto& [is_misplaced, name] : misplaced)
+    if (is_misplaced) throw std::runtime_error(fmt::format("{}: has no effect here, see --help", name));
+  return action(options);
 }
 
 }  // namespace
@@ -340,9 +327,7 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   try {
-    const Action action = action_of(options);
-    check_effect(action, {argv + 1, argv + argc});
-    return action.run(options);
+    return act(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "campaign: {}\n", error.what());
     return kBadInput;
