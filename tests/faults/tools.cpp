@@ -104,6 +104,9 @@ void hostile_bytes_are_not_decoded(void**) {
 void a_manual_page_lists_the_options_of_its_program(void**) {
   passes("manual_pages");
 }
+void an_installed_script_has_the_modules_that_it_imports(void**) {
+  passes("installed_modules");
+}
 
 }  // namespace
 
@@ -150,6 +153,7 @@ int main() {
                                 sidestep::test::kill_processes),
       cmocka_unit_test_teardown(hostile_bytes_are_not_decoded, sidestep::test::kill_processes),
       cmocka_unit_test_teardown(a_manual_page_lists_the_options_of_its_program, sidestep::test::kill_processes),
+      cmocka_unit_test_teardown(an_installed_script_has_the_modules_that_it_imports, sidestep::test::kill_processes),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -639,6 +639,17 @@ def manual_pages():
         assert offered and offered == listed, (name, offered ^ listed)
 
 
+def installed_modules():
+    """Every module of host/tools that an installed script imports is installed, too (environment is cut out)."""
+    staged = re.search(r"for tool in (send_target .*); do", (ROOT / "host/install/stage").read_text())[1].split()
+    assert {"send_target", "record", "wire"} <= set(staged)
+    for name in staged:
+        text = (ROOT / f"host/tools/{name}.py").read_text()
+        imported = set(re.findall(r"^ *(?:import|from) ([a-z_]+)", text, re.MULTILINE)) - {"environment"}
+        missing = {other for other in imported if (ROOT / f"host/tools/{other}.py").exists()} - set(staged)
+        assert not missing, (name, missing)
+
+
 CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, nearest_lines, unknown_clearance,
                                               allowed_touch, panel_texts, quaternions, places,
                                               surroundings, visual_meshes, log_replays, closed_logs,
@@ -646,7 +657,7 @@ CHECKS = {check.__name__: check for check in (velocities, tracks, clearances, ne
                                               unknown_scenario, taken_port, lost_view, play_commands, another_python,
                                               busy_network, networks, camera, second_signal, signal_within_poll,
                                               late_receiver, watched_texts, hostile_bytes, goals,
-                                              manual_pages)}
+                                              manual_pages, installed_modules)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
