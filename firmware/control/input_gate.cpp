@@ -62,9 +62,9 @@ Verdict InputGate::accept(Attachments& attachments, double now_s) {
   return kAccepted;
 }
 
-/// sent_apart_s: since the last set, without jitter. elapsed_s: the same, at least what can have passed.
-void InputGate::complete(ObstacleSet& obstacles, double sent_apart_s, double elapsed_s, double now_s) {
-  if (estimates_motion_) estimator_.complete(obstacles, std::max(0.0, sent_apart_s - late_s_));
+/// sending_interval_s: since the last set, without jitter. elapsed_s: the longest time that can have passed since then.
+void InputGate::complete(ObstacleSet& obstacles, double sending_interval_s, double elapsed_s, double now_s) {
+  if (estimates_motion_) estimator_.complete(obstacles, std::max(0.0, sending_interval_s - late_s_));
   late_s_ = 0.0;
   estimated_s_ = now_s;
   memory_.add_remembered(obstacles, elapsed_s, now_s);
@@ -93,7 +93,7 @@ Verdict InputGate::accept(ObstacleSet& obstacles, int64_t utime, double now_s) {
     return kAccepted;
   }
   if (obstacles_order_.accept(utime, now_s, timeouts_.obstacles_s)) {
-    complete(obstacles, obstacles_order_.sent_apart_s(), obstacles_order_.elapsed_s(), now_s);
+    complete(obstacles, obstacles_order_.sending_interval_s(), obstacles_order_.elapsed_s(), now_s);
     return kAccepted;
   }
   if (!obstacles_order_.is_late(utime)) return {};

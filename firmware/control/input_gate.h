@@ -47,7 +47,7 @@ class InputGate {
   Verdict accept(OtherJoints& joints, double now_s);
 
  private:
-  void complete(ObstacleSet& obstacles, double sent_apart_s, double elapsed_s, double now_s);
+  void complete(ObstacleSet& obstacles, double sending_interval_s, double elapsed_s, double now_s);
   void complete_late(ObstacleSet& late, double now_s);
   bool is_ordered() const { return source_ == InputSource::kNetwork || source_ == InputSource::kLockstep; }
 

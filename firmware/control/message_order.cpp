@@ -30,19 +30,21 @@ bool MessageOrder::has_restarted(int64_t utime, double now_s, double restart_s) 
 /// jitter remains of it. Bounded by slack_s: a clock in another unit, or one that stands still, is soon ignored.
 void MessageOrder::follow_clock(int64_t utime, double by_receipt_s, double slack_s) {
   const double by_clock_s = 1e-6 * (static_cast<double>(utime) - static_cast<double>(utime_));
-  const bool restarted = by_clock_s <= 0.0;
-  const double lead_s =
-      restarted ? 0.0 : std::clamp(kLeadKept * lead_s_ + by_clock_s - by_receipt_s, -slack_s, slack_s);
-  const double change_s = restarted ? 0.0 : lead_s - lead_s_;
-  sent_apart_s_ = any_ ? std::max(0.0, by_receipt_s + change_s) : 0.0;
-  lead_s_ = any_ ? lead_s : 0.0;
+  if (by_clock_s <= 0.0) {  // the sender has restarted
+    lead_s_ = 0.0;
+    sending_interval_s_ = by_receipt_s;
+    return;
+  }
+  const double lead_s = std::clamp(kLeadKept * lead_s_ + by_clock_s - by_receipt_s, -slack_s, slack_s);
+  sending_interval_s_ = std::max(0.0, by_receipt_s + (lead_s - lead_s_));
+  lead_s_ = lead_s;
 }
 
 bool MessageOrder::accept(int64_t utime, double now_s, double restart_s) {
   if (any_ && utime <= utime_ && !has_restarted(utime, now_s, restart_s)) return false;
   const double by_receipt_s = std::abs(now_s - accepted_s_);
-  elapsed_s_ = any_ ? std::max(by_receipt_s, sidestep::sent_apart_s(utime_, utime, by_receipt_s, restart_s)) : 0.0;
-  follow_clock(utime, by_receipt_s, restart_s);
+  elapsed_s_ = any_ ? std::max(by_receipt_s, sent_apart_s(utime_, utime, by_receipt_s, restart_s)) : 0.0;
+  if (any_) follow_clock(utime, by_receipt_s, restart_s);
   any_ = true;
   old_in_a_row_ = 0;
   utime_ = utime;

@@ -29,7 +29,7 @@ class MessageOrder {
 
   /// Time between the sending of the last two accepted messages, s: that of the sender's clock, without the jitter of
   /// the network. In the mean it is the time between their receipts, whatever the sender's clock does. 0 for the first.
-  double sent_apart_s() const { return sent_apart_s_; }
+  double sending_interval_s() const { return sending_interval_s_; }
 
  private:
   bool has_restarted(int64_t utime, double now_s, double restart_s);
@@ -41,7 +41,7 @@ class MessageOrder {
   int old_in_a_row_ = 0;   ///< such messages since the last accepted one
   double accepted_s_ = 0.0;
   double elapsed_s_ = 0.0;
-  double sent_apart_s_ = 0.0;
+  double sending_interval_s_ = 0.0;
   double lead_s_ = 0.0;  ///< by how much the sender's clock is ahead of the receipts, less the mean
 };
 

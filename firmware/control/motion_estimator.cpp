@@ -16,7 +16,7 @@ constexpr int kNoiseDeviations = 20;     // the variance is about the mean of so
 constexpr int kLeastDeviations = 3;      // for fewer it is unknown
 constexpr double kFastest_mps = 8.0;     // a hand reaches 6 m/s
 constexpr double kNoise_m = 0.05;        // of a measured position
-constexpr double kOtherEdge = 0.7;       // cosine; where the axis of a box turns farther, another edge is the longest
+constexpr double kSameEdge = 0.7;        // cosine; where the axis of a box turns farther, another edge is the longest
 
 constexpr double kLead_s = 0.2;
 constexpr double kLargestLead_mps = 0.5;
@@ -122,10 +122,10 @@ void MotionEstimator::complete(Obstacle& obstacle, Track& track) const {
   obstacle.velocity_mps += obstacle.lead_mps;
   Vector3 half_axis_m = 0.5 * (capsule.end - capsule.start);
   if (half_axis_m.squaredNorm() == 0.0) return;
-  if (half_axis_m.dot(track.half_axis_m) < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order
   const double along_m2 = half_axis_m.dot(track.half_axis_m);
-  const bool is_near = along_m2 > kOtherEdge * half_axis_m.norm() * track.half_axis_m.norm();
-  if (obstacle.shape == Shape::kBox && !is_near) track.axis = Point();
+  if (along_m2 < 0.0) half_axis_m = -half_axis_m;  // the ends are reported in either order
+  const bool same_edge = std::abs(along_m2) > kSameEdge * half_axis_m.norm() * track.half_axis_m.norm();
+  if (obstacle.shape == Shape::kBox && !same_edge) track.axis = Point();
   track.half_axis_m = half_axis_m;
   const Vector3 tip_mps = track.axis.velocity_mps({now_s_, half_axis_m});
   if (obstacle.angular_velocity_radps.isZero(0.0))

@@ -198,17 +198,17 @@ class Gatherer {
     const NearPair pair{now, approach, velocity_mps};
     if (near.is_full()) {
       const double margin_m = margin_of(pair);
-      if (margin_m >= margins_m_[last_]) return;
-      near[last_] = pair;
-      margins_m_[last_] = margin_m;
+      if (margin_m >= margins_m_[least_urgent_]) return;
+      near[least_urgent_] = pair;
+      margins_m_[least_urgent_] = margin_m;
     } else {
       near.add(pair);
       if (!near.is_full()) return;
       find_fastest_link();
       for (const NearPair& listed : near) margins_m_.add(margin_of(listed));
     }
-    last_ = static_cast<int>(std::max_element(margins_m_.begin(), margins_m_.end()) - margins_m_.begin());
-    listed_m_ = margins_m_[last_] + fastest_mps_ * reach_.stopping_s;
+    least_urgent_ = static_cast<int>(std::max_element(margins_m_.begin(), margins_m_.end()) - margins_m_.begin());
+    listed_m_ = margins_m_[least_urgent_] + fastest_mps_ * reach_.stopping_s;
     limit_m_ = std::min(limit_m_, listed_m_);
   }
 
@@ -242,7 +242,7 @@ class Gatherer {
   Clearance& clearance_;
   int last_body_ = 0;                        ///< links of bodies above may touch the obstacle
   BoundedList<double, kMaxNear> margins_m_;  ///< margin_of() each pair of a full list
-  int last_ = 0;                             ///< index of the largest of them
+  int least_urgent_ = 0;                     ///< index of the largest of them
   double fastest_mps_ = 0.0;                 ///< find_fastest_link()
 };
 

@@ -121,9 +121,8 @@ void declare(CommandLine& app, Options& options) {
       .add_option("files", options.merge, "CSV files")
       .required();
   app.footer(
-      "Exit code: 0 done, 2 bad arguments or files, 130 interrupted. Ctrl-C lets the scenes in progress end, a second "
-      "one "
-      "does not.");
+      "Exit code: 0 done, 2 bad arguments or files, 130 interrupted.\n"
+      "The first Ctrl-C lets the scenes in progress end, a second one does not.");
 }
 
 struct Shard {

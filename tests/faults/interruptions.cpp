@@ -29,17 +29,14 @@ void a_controller_stopped_and_continued_brakes_and_tracks_again(void**) {
   scene.arm.run(0.5);
   const int64_t skipped = scene.arm.status().skipped_cycles;
   const size_t first = scene.arm.peer.statuses.size(), commands = scene.arm.peer.commands.size();
-  const auto brakes = [&] {
-    return any(scene.arm, first, [](const Status& s) { return s.mode == Status::BRAKE || s.mode == Status::FAULT; });
-  };
   const double continued_s = monotonic_s();
   scene.controller.signal(SIGCONT);
-  do scene.arm.run(0.1);
-  while (!brakes() && monotonic_s() < continued_s + 2.0);
+  scene.arm.run(0.1);
   const double passed_s = monotonic_s() - continued_s;  // on a busy machine more than 0.1 s
   const size_t soon = scene.arm.peer.commands.size() - commands;
   check(static_cast<double>(soon) <= 100.0 * passed_s + 4.0, "%zu commands in %g s", soon, passed_s);
-  assert_true(brakes());
+  assert_true(
+      any(scene.arm, first, [](const Status& s) { return s.mode == Status::BRAKE || s.mode == Status::FAULT; }));
   assert_true(scene.arm.status().skipped_cycles - skipped > 40);
   assert_true(scene.arm.run_until(Status::TRACK, 2.0));
   scene.wander(0.8);

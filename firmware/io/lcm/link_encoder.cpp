@@ -11,8 +11,7 @@ Packet LinkEncoder::encode(const ArmState& arm, const OtherFrames& others, int64
   const auto add = [&](const BodyShape& shape) {
     Obstacle link = link_obstacle(poses, shape, arm.velocity_radps);
     if (shape.other_joint >= 0)
-      link.velocity_mps +=
-          other_velocity_at(arm_, poses, shape.other_joint, 0.5 * (link.capsule.start + link.capsule.end));
+      link.velocity_mps += other_velocity_at(arm_, poses, shape.other_joint, link.capsule.centre());
     link.id = id++;
     encoder_.add(transformed(world_from_base_, link));
   };

@@ -37,7 +37,7 @@ ObstacleSet& ObstacleMerger::draft(size_t part) {
 bool ObstacleMerger::accept(size_t number, int64_t utime, double now_s) {
   Part& part = *parts_[number];
   if (!part.order.accept(utime, now_s, timeout_s_)) return false;
-  if (estimates_motion_) part.estimator.complete(draft(number), part.order.sent_apart_s());
+  if (estimates_motion_) part.estimator.complete(draft(number), part.order.sending_interval_s());
   part.current = 1 - part.current;
   part.received_s = now_s;
   return true;

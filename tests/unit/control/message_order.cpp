@@ -87,8 +87,8 @@ void the_time_between_two_sendings_is_free_of_jitter(void**) {
   for (int k = 0; k <= messages; ++k) {
     const double sent_s = k / 30.0;
     assert_true(order.accept(std::lround(sent_s * 1e6), sent_s + random.uniform(0.010, 0.026), 0.1));
-    if (k > 0) check_near(order.sent_apart_s(), 1.0 / 30.0, 3e-4);
-    sum_s += order.sent_apart_s();
+    if (k > 0) check_near(order.sending_interval_s(), 1.0 / 30.0, 3e-4);
+    sum_s += order.sending_interval_s();
   }
   check_near(sum_s, messages / 30.0, 0.04);
 }
@@ -100,7 +100,7 @@ void the_time_between_two_sendings_follows_the_receipts_in_the_mean(void**) {
     double sum_s = 0.0;
     for (int k = 0; k <= 600; ++k) {
       assert_true(order.accept(std::lround(k / 30.0 * ticks_per_s), k / 30.0, 0.1));
-      if (k >= 300) sum_s += order.sent_apart_s();
+      if (k >= 300) sum_s += order.sending_interval_s();
     }
     check_near(sum_s, 301 / 30.0, 0.05);
   }
@@ -111,9 +111,9 @@ void a_restarted_sender_does_not_turn_time_back(void**) {
   assert_true(order.accept(9'000'000, 1.00, 0.1));
   assert_true(order.accept(9'033'000, 1.03, 0.1));
   assert_true(order.accept(5, 2.00, 0.1));
-  check_near(order.sent_apart_s(), 0.97, 1e-12);
+  check_near(order.sending_interval_s(), 0.97, 1e-12);
   assert_true(order.accept(30'005, 2.04, 0.1));
-  check_near(order.sent_apart_s(), 0.03, 1e-12);
+  check_near(order.sending_interval_s(), 0.03, 1e-12);
 }
 
 /// In lockstep the arm's utime is also the controller's clock.

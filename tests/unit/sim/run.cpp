@@ -331,26 +331,20 @@ void after_a_refused_command_the_last_one_stays_in_effect(void**) {
   check_near(result.q_rad[0], 0.03, 1e-12);
 }
 
-/// On a busy machine a run can be late, and messages are then left out: one run of five has to be in time.
 void real_time_lasts_its_duration_and_sends_the_arm_state_every_2_ms(void**) {
-  bool in_time = false;
-  for (int tries = 0; tries < 5 && !in_time; ++tries) {
-    StandIn controller(respond_well);
-    const auto start = std::chrono::steady_clock::now();
-    const Result result = simulate(scenario_of(0.4), false);
-    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    controller.stop();
-    assert_true(result.outcome == Outcome::kDone);
-    assert_int_equal(result.periods, 41);
-    check(took_s > 0.4, "%g s", took_s);
-    const size_t arms = controller.arms.size(), sets = controller.obstacles.size();
-    print_message("%g s, %zu arm states, %zu obstacle messages\n", took_s, arms, sets);
-    in_time = took_s < 2 && arms > 100 && arms < 1000 && sets >= 20;
-    check_near(controller.obstacles.at(0).obstacles[0].position[0], 0.3, 0);
-    const double travelled_m = controller.obstacles.back().obstacles[0].position[0] - 0.3;
-    check(travelled_m <= 0.08 + 1e-12 && (!in_time || travelled_m > 0.02), "%g m", travelled_m);
-  }
-  assert_true(in_time);
+  StandIn controller(respond_well);
+  const auto start = std::chrono::steady_clock::now();
+  const Result result = simulate(scenario_of(0.4), false);
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  controller.stop();
+  assert_true(result.outcome == Outcome::kDone);
+  assert_int_equal(result.periods, 41);
+  check(took_s > 0.4 && took_s < 2, "%g s", took_s);
+  check(controller.arms.size() > 100 && controller.arms.size() < 1000, "%zu arm states", controller.arms.size());
+  check(controller.obstacles.size() >= 20, "%zu obstacle messages", controller.obstacles.size());
+  check_near(controller.obstacles[0].obstacles[0].position[0], 0.3, 0);
+  const double travelled_m = controller.obstacles.back().obstacles[0].position[0] - 0.3;
+  check(travelled_m > 0.02 && travelled_m <= 0.08 + 1e-12, "%g m", travelled_m);
 }
 
 }  // namespace
