@@ -49,7 +49,7 @@ constexpr std::array<Column, 4> kPeopleColumns{{
     {"rest_clearance_m", &TrialMetrics::rest_clearance_m},
     {"closing_mps", &TrialMetrics::closing_mps},
     {"way_out", &TrialMetrics::way_out},
-    {"late_way_out", &TrialMetrics::late_way_out},
+    {"seen_way_out", &TrialMetrics::seen_way_out},
 }};
 
 /// Only in files with families of furniture.

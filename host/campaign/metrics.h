@@ -42,7 +42,8 @@ struct TrialMetrics {
   double rest_clearance_m = kNone;  ///< least clearance of an arm that stays at the start
   double closing_mps = kNone;       ///< contact: largest speed at which the arm itself made the clearance smaller
   double way_out = kNone;           ///< 1: some motion from the start has no contact; 0: none was found
-  double late_way_out = kNone;      ///< contact: the same from the arm's state 0.5 s before the first one
+  double seen_way_out = kNone;      ///< contact: the same from the arm's state when the controller could first see
+                                    ///< the approach that ended in it (people_judge.h)
 };
 
 }  // namespace sidestep::campaign

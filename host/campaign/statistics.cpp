@@ -44,8 +44,8 @@ Sample successes(const Sample& sample) {
 bool touched_avoidably(const Row& row) {
   return row.metrics.clearance_m < 0.0 && row.metrics.way_out > 0.0;
 }
-bool touched_avoidably_late(const Row& row) {
-  return row.metrics.clearance_m < 0.0 && row.metrics.late_way_out > 0.0;
+bool touched_avoidably_when_seen(const Row& row) {
+  return row.metrics.clearance_m < 0.0 && row.metrics.seen_way_out > 0.0;
 }
 bool touched_deeper_than_at_rest(const Row& row) {
   constexpr double kDeeper_m = 1e-3;

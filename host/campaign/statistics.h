@@ -23,9 +23,9 @@ bool succeeded(const Row& row);
 Sample successes(const Sample& sample);
 
 /// Among people: the arm touched a person although a motion without contact exists, from the start or still from the
-/// arm's state 0.5 s before.
+/// arm's state when the approach could first be seen.
 bool touched_avoidably(const Row& row);
-bool touched_avoidably_late(const Row& row);
+bool touched_avoidably_when_seen(const Row& row);
 /// Among people: the arm touched a person, and deeper than an arm that stays at the start would have, by 1 mm or more.
 bool touched_deeper_than_at_rest(const Row& row);
 /// An arm that stays at the start is touched.

@@ -108,7 +108,7 @@ const Columns& people_columns() {
       interval_column("success", succeeded),
       interval_column("contact", touched),
       interval_column("avoidable", touched_avoidably),
-      {"still 0.5 s", "before, %", 1, share(touched_avoidably_late)},
+      {"still when", "seen, %", 1, share(touched_avoidably_when_seen)},
       interval_column("deeper than", touched_deeper_than_at_rest),
       {"arm at rest", "touched, %", 1, share(touched_at_rest)},
       {"of links", "%", 1, share(touched_itself)},

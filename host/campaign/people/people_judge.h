@@ -5,9 +5,14 @@
 
 namespace sidestep::campaign {
 
-/// The state this long before the end of the period in which the first contact is decides whether it could still be
-/// avoided then.
-constexpr double kLate_s = 0.5;
+/// A capsule that comes nearer more slowly than this, m/s, has not begun the approach that ends in a contact.
+constexpr double kApproach_mps = 0.5;
+
+/// A hand may end its approach so long before it touches: it slows down, and the arm moves.
+constexpr int kSlowPeriods = 5;
+
+/// A search from the state so long before a contact finds ways out that one from the start misses.
+constexpr int kLatePeriods = 50;
 
 /// Compares an arm among persons with one that stays at the start, and with full knowledge of the persons' motion.
 class PeopleJudge {
@@ -18,11 +23,21 @@ class PeopleJudge {
   void record_state(const Joints& q_rad) { path_rad_.push_back(q_rad); }
 
   /// To be called after the last period, with the contacts that the judge saw. Writes rest_clearance_m, closing_mps,
-  /// way_out and late_way_out.
+  /// way_out and seen_way_out.
   void complete(TrialMetrics& metrics, const std::vector<Contact>& contacts) const;
 
  private:
   ArmInstant at(int period) const;
+
+  /// The speed at which a capsule came nearer to the arm in a period, the arm at rest where it is at its end.
+  double approach_mps(const CapsulePath& capsule, int period) const;
+
+  /// The end of the period at which the capsule that the first contact is with began to approach; 0 if it did so more
+  /// slowly than kApproach_mps.
+  int approach_begins(const Contact& first) const;
+
+  /// When the controller could see this at the earliest.
+  int approach_seen(const Contact& first) const;
 
   /// The speed at which the arm's own motion since the last period made the clearance smaller, persons at rest.
   double closing_mps(const Contact& contact) const;

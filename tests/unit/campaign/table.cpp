@@ -35,7 +35,7 @@ std::vector<Row> some_rows() {
         if (family.has_people()) row.metrics.rest_clearance_m = any(engine);
         if (family.has_furniture()) row.metrics.final_turn_rad = any(engine);
         if (family.posture) row.metrics.final_posture_rad = any(engine);
-        if (family.has_people()) row.metrics.late_way_out = seed % 2 == 0 ? 1.0 : 0.0;
+        if (family.has_people()) row.metrics.seen_way_out = seed % 2 == 0 ? 1.0 : 0.0;
         rows.push_back(row);
       }
     }
@@ -195,12 +195,12 @@ void the_table_prints_shares_with_their_interval(void**) {
   check(text.find("50.0 (9.5-90.5)") != std::string::npos, "%s", text.c_str());
 }
 
-Row among_people(double clearance_m, double rest_clearance_m, double way_out, double late_way_out) {
+Row among_people(double clearance_m, double rest_clearance_m, double way_out, double seen_way_out) {
   Row row{&family_named("walk-by"), "sidestep", 0, {}};
   row.metrics.clearance_m = clearance_m;
   row.metrics.rest_clearance_m = rest_clearance_m;
   row.metrics.way_out = way_out;
-  row.metrics.late_way_out = late_way_out;
+  row.metrics.seen_way_out = seen_way_out;
   return row;
 }
 
@@ -210,7 +210,7 @@ void contacts_with_persons_are_classified(void**) {
   const Sample sample{none, avoidable, late, hopeless};
   check_near(percent(sample, touched), 75.0, 0.0);
   check_near(percent(sample, touched_avoidably), 50.0, 0.0);
-  check_near(percent(sample, touched_avoidably_late), 25.0, 0.0);
+  check_near(percent(sample, touched_avoidably_when_seen), 25.0, 0.0);
   check_near(percent(sample, touched_at_rest), 75.0, 0.0);
   assert_true(touched_deeper_than_at_rest(avoidable) && touched_deeper_than_at_rest(hopeless));
   assert_false(touched_deeper_than_at_rest(none) || touched_deeper_than_at_rest(late));

@@ -3,6 +3,7 @@
 #include "host/campaign/people/people_judge.h"
 #include "host/campaign/scene_maker.h"
 #include "host/campaign/trial.h"
+#include "host/people/body.h"
 #include "tests/support/check.h"
 #include "tests/support/constant_controller.h"
 
@@ -40,6 +41,20 @@ Scene approached(double arrival_s, bool wide) {
 /// It passes the arm's axis from positive x on in the middle of a period, at whose beginning and end it is 25 mm clear.
 Scene passed(int period, bool wide) {
   return met_by([=](double t_s) { return 25.0 * ((period - 0.5) * kPeriod_s - t_s); }, wide);
+}
+
+/// A person all of whose parts are one capsule that moves on this path.
+template <typename Path>
+Scene person_on(const Path& x_m, const char* family) {
+  Scene scene = met_by(x_m, false);
+  scene.family = &family_named(family);
+  scene.capsules.resize(kBodyParts, scene.capsules.front());
+  return scene;
+}
+
+/// It rests at x = 1 m for 2 s, then comes to the arm's axis in this time.
+Scene struck(double stroke_s, const char* family) {
+  return person_on([=](double t_s) { return 1.0 - std::clamp((t_s - 2.0) / stroke_s, 0.0, 1.0); }, family);
 }
 
 ArmInstant at_rest(const Scene& scene, int period) {
@@ -86,10 +101,10 @@ void an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest(void**) {
   const TrialMetrics moved = run_trial(scene, toward), rested = run_trial(scene, idle);
   check_near(rested.clearance_m, 0.3, 1e-9);
   check_near(rested.rest_clearance_m, rested.clearance_m, 1e-9);
-  check(std::isnan(rested.closing_mps) && std::isnan(rested.late_way_out) && rested.way_out == 1.0, "no contact");
+  check(std::isnan(rested.closing_mps) && std::isnan(rested.seen_way_out) && rested.way_out == 1.0, "no contact");
   check(moved.clearance_m < -0.05 && moved.rest_clearance_m > 0.29, "%g m", moved.clearance_m);
   check_near(moved.closing_mps, 0.3 * 0.7, 0.05);  // the lever of the second joint to the contact
-  check(moved.way_out == 1.0 && moved.late_way_out == 1.0, "the arm could have stopped");
+  check(moved.way_out == 1.0 && moved.seen_way_out == 1.0, "the arm could have stopped");
 }
 
 void what_passes_between_two_periods_is_judged_when_it_passes(void**) {
@@ -97,7 +112,7 @@ void what_passes_between_two_periods_is_judged_when_it_passes(void**) {
   const TrialMetrics rested = run_trial(passed(40, true), idle);
   check(rested.clearance_m < -0.07, "%g m", rested.clearance_m);
   check(rested.closing_mps == 0.0, "%g m/s", rested.closing_mps);
-  check(rested.late_way_out == 0.0, "a way out after the wall has passed");
+  check(rested.seen_way_out == 0.0, "a way out after the wall has passed");
   const TrialMetrics moved = run_trial(passed(20, false), toward);
   check(moved.clearance_m < -0.07, "%g m", moved.clearance_m);
   check_near(moved.closing_mps, 0.3 * 0.6, 0.02);  // the lever of the second joint to the contact
@@ -113,6 +128,30 @@ void an_arm_at_rest_and_ways_out_are_judged_at_the_instants_of_a_trial(void**) {
   assert_false(has_way_out(passed(20, true), at_rest(passed(20, true), 0)));
 }
 
+/// The arm has time from the start, but a stroke is too fast when it is seen.
+void a_way_out_when_seen_begins_with_the_approach(void**) {
+  ConstantController idle(Joints::Zero(7));
+  const auto judged = [&](const Scene& scene) {
+    const TrialMetrics metrics = run_trial(scene, idle);
+    check(metrics.clearance_m < -0.05 && metrics.way_out == 1.0, "%g m", metrics.clearance_m);
+    return metrics.seen_way_out == 1.0;
+  };
+  for (const char* family : {"walk-by", "walk-by@camera"}) {
+    assert_true(judged(struck(1.0, family)));
+    assert_true(judged(person_on([](double t_s) { return std::max(0.0, 1.0 - 0.3 * t_s); }, family)));  // slowly
+    assert_false(judged(struck(0.1, family)));
+  }
+  int camera = 0, exact = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double stroke_s = 0.1 + 0.02 * i;
+    const bool in_time = judged(struck(stroke_s, "walk-by")), late = judged(struck(stroke_s, "walk-by@camera"));
+    check(in_time || !late, "%g s", stroke_s);
+    exact += in_time;
+    camera += late;
+  }
+  check(camera + 2 <= exact, "a camera shows it 50 ms later: %d, %d", camera, exact);
+}
+
 }  // namespace
 
 int main() {
@@ -125,6 +164,7 @@ int main() {
       cmocka_unit_test(an_arm_that_moves_into_a_person_is_judged_worse_than_one_at_rest),
       cmocka_unit_test(what_passes_between_two_periods_is_judged_when_it_passes),
       cmocka_unit_test(an_arm_at_rest_and_ways_out_are_judged_at_the_instants_of_a_trial),
+      cmocka_unit_test(a_way_out_when_seen_begins_with_the_approach),
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
