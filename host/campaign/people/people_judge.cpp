@@ -43,7 +43,7 @@ int PeopleJudge::approach_begins(const Contact& first) const {
   return period;
 }
 
-int PeopleJudge::approach_seen(const Contact& first) const {
+int PeopleJudge::approach_is_seen(const Contact& first) const {
   const double delay_s = scene_.family->camera ? Camera::kDelay_us / 1e6 : 0.0;
   return approach_begins(first) + static_cast<int>(std::lround(delay_s / kPeriod_s));
 }
@@ -55,7 +55,7 @@ void PeopleJudge::complete(TrialMetrics& metrics, const std::vector<Contact>& co
   metrics.closing_mps = 0.0;
   for (const Contact& contact : contacts) metrics.closing_mps = std::max(metrics.closing_mps, closing_mps(contact));
   const Contact& first = contacts.front();
-  const int seen = approach_seen(first), late = std::max(0, first.period - kLatePeriods);
+  const int seen = approach_is_seen(first), late = std::max(0, first.period - kLatePeriods);
   const bool seen_way_out = seen < first.period && has_way_out(scene_, at(seen));
   const bool way_out =
       seen_way_out || metrics.rest_clearance_m >= 0.0 || has_way_out(scene_, at(late)) || has_way_out(scene_, at(0));

@@ -5,10 +5,10 @@
 
 namespace sidestep::campaign {
 
-/// A capsule that comes nearer more slowly than this, m/s, has not begun the approach that ends in a contact.
+/// In an approach a capsule comes nearer to the arm by at least this, m/s.
 constexpr double kApproach_mps = 0.5;
 
-/// A hand may end its approach so long before it touches: it slows down, and the arm moves.
+/// An approach may end so many periods before the contact: the hand slows down, and the arm moves.
 constexpr int kSlowPeriods = 5;
 
 /// A search from the state so long before a contact finds ways out that one from the start misses.
@@ -32,12 +32,11 @@ class PeopleJudge {
   /// The speed at which a capsule came nearer to the arm in a period, the arm at rest where it is at its end.
   double approach_mps(const CapsulePath& capsule, int period) const;
 
-  /// The end of the period at which the capsule that the first contact is with began to approach; 0 if it did so more
-  /// slowly than kApproach_mps.
+  /// The period at whose end the capsule that touches first begins its approach. 0 if it comes without one.
   int approach_begins(const Contact& first) const;
 
-  /// When the controller could see this at the earliest.
-  int approach_seen(const Contact& first) const;
+  /// The period at whose end the controller could see this at the earliest.
+  int approach_is_seen(const Contact& first) const;
 
   /// The speed at which the arm's own motion since the last period made the clearance smaller, persons at rest.
   double closing_mps(const Contact& contact) const;
